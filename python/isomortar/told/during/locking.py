@@ -68,7 +68,7 @@ def locking(equilibrium: Equilibrium, positions: FloatArray, body: Body, along: 
     along : int
         Number of the direction.
     """
-    problem, numbering = equilibrium.problem, equilibrium.numbering
+    problem, numbering, stage = equilibrium.problem, equilibrium.numbering, equilibrium.supports.stage
     piece = next(piece for piece in pieces(problem) if body in piece)
     shared = next(places for places in shared_directions(problem) if (body.name, "uvw"[along]) in places)
     axes = {name: "uvw".index(letter) for name, letter in shared}
@@ -76,11 +76,11 @@ def locking(equilibrium: Equilibrium, positions: FloatArray, body: Body, along: 
     try:
         for one in (replace(one, closed=None, raised=None) for one in piece):
             here = numbering.of_patch(one.name, positions)
-            alone = _of(problem, (one,))
+            alone = _of(problem, (one,), stage)
             forces.append(alone.solid.forces_and_tangent(here - alone.origin)[0].copy())
             before.append(replace(one, patch=replace(one.patch, control_points=here)))
-        as_it_is = _of(problem, tuple(before))
-        acts = _together(as_it_is, before, forces)
+        as_it_is = _of(problem, tuple(before), stage)
+        acts = np.where(as_it_is.supports.held, 0.0, _together(as_it_is, before, forces))
         at_ends = _at_ends(as_it_is, _along_them(before, axes), axes, acts)
         if not at_ends and body.patch.directions[along].order <= ESTIMATED:
             return UNKNOWN
@@ -90,7 +90,7 @@ def locking(equilibrium: Equilibrium, positions: FloatArray, body: Body, along: 
             raised_forces.append(on_finer)
         if sum(len(one.patch.weights) for one in after) > MOST:
             return UNKNOWN
-        finest = _of(problem, tuple(after))
+        finest = _of(problem, tuple(after), stage)
         went = _went(as_it_is, _along_them(before, axes), acts)
         would = _went(finest, _along_them(after, axes), _together(finest, after, raised_forces))
     except (InputError, KernelError):  # folded, or control points are one at a pole, and forces on them are others'
@@ -111,8 +111,8 @@ def _at_ends(of: Equilibrium, bodies: Sequence[Body], axes: Mapping[str, int], f
     return bool(sizes.sum() - sizes[ends].sum() < BETWEEN * sizes.sum())
 
 
-def _of(problem: Problem, bodies: tuple[Body, ...]) -> Equilibrium:
-    """Bodies that are glued, or one alone, which nothing holds.
+def _of(problem: Problem, bodies: tuple[Body, ...], stage: int) -> Equilibrium:
+    """Bodies that are glued, or one alone, with what holds them still in a stage: what moves them exerts the forces that it does.
 
     Raises
     ------
@@ -121,7 +121,9 @@ def _of(problem: Problem, bodies: tuple[Body, ...]) -> Equilibrium:
     """
     names = {body.name for body in bodies}
     glue = tuple(joint for joint in problem.glue if all(face.body in names for face in joint)) if len(bodies) > 1 else ()
-    equilibrium = Equilibrium(replace(problem, bodies=bodies, contacts=(), glue=glue, supports=(), loads=()), Ledger())
+    still = [one for one in problem.supports if one.place.body in names and one.holds(stage) and not one.moves and not one.is_plate]
+    supports = tuple(replace(one, stages=None) for one in still)
+    equilibrium = Equilibrium(replace(problem, bodies=bodies, contacts=(), glue=glue, supports=supports, loads=()), Ledger())
     if any(len(np.unique(points)) < len(points) for points in equilibrium.numbering.points.values()):
         raise InputError("control points are one")
     return equilibrium
@@ -138,7 +140,7 @@ def _together(of: Equilibrium, bodies: Sequence[Body], forces: Sequence[FloatArr
 def _went(of: Equilibrium, bodies: Sequence[Body], forces: FloatArray) -> float:
     """Work that forces on bodies free of strain put into some of them: what others give way is theirs."""
     ways = deformed_by(forces, of, of.numbering.reference)
-    return sum(_energy(_of(of.problem, (body,)), of.numbering.of_patch(body.name, ways)) for body in bodies)
+    return sum(_energy(_of(of.problem, (body,), of.supports.stage), of.numbering.of_patch(body.name, ways)) for body in bodies)
 
 
 def _energy(alone: Equilibrium, ways: FloatArray) -> float:
