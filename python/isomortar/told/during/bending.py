@@ -17,7 +17,7 @@ from isomortar.model.ratios import times
 from isomortar.model.rigid import deformation
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.told.before.meshes import SAID_ABOVE, stiff_sheet
-from isomortar.told.during.locking import ESTIMATED, locking
+from isomortar.told.during.locking import locking
 
 #: How much too stiff elements of order 2 are in bending, over (h / t)^2 times (h / R)^2 of bodies that are curved, and (h / l)^2 of smooth
 #: ones that are l long: fitted to half and quarter rings (0.10 to 0.18), and to beams and plates (0.02 to 0.28, by how they are held).
@@ -25,6 +25,8 @@ CURVED, STRAIGHT = 0.15, 0.1
 #: As much, at the most, of order p above 2, over (h / t)^2 (h / R)^(2 p - 2): parts of rings of orders 3 and 4 were off by 0.0001 to 0.3
 #: times that, by how they are held. What it suspects is computed.
 HIGHER = 0.3
+#: Order up to which these are estimates, good enough to be told of bodies that are too large to be computed.
+ESTIMATED = 2
 #: Share by which a body is too stiff from which on it is told: estimates are good for the order of magnitude.
 TOLD = 0.25
 #: Share by which a body that stretches more than it bends is too stiff from which on it is told: it would bend, and stretches for it.
@@ -86,11 +88,10 @@ class Bending:
         if way is None:
             return None
         computed = locking(self._equilibrium, positions, body, way.along)
-        if not bends_more:
-            way = replace(way, share=computed.share * (computed.at_ends and computed.share > STIFF))
-        elif computed.at_ends or body.patch.directions[way.along].order > ESTIMATED:
-            way = replace(way, share=computed.share)
-        return way if way.share > TOLD else None
+        if computed is None:
+            return way if bends_more and body.patch.directions[way.along].order <= ESTIMATED else None
+        share = computed.share if bends_more or (computed.at_ends and computed.share > STIFF) else 0.0
+        return replace(way, share=share) if share > TOLD else None
 
     def _sentence(self, body: Body, bent: Way, step: int) -> str:
         problem = self._equilibrium.problem

@@ -22,17 +22,15 @@ from isomortar.told.during.giving_way import deformed_by
 #: Orders more along a body that are taken for what is true: rings of a single element of order 3, 120 times too stiff, were 44 times so at
 #: order 4 and 1.6 at order 5.
 RAISED = 3
-#: Order up to which there is an estimate of what forces between the ends of a body do (theory 9.20): above it what is computed is all.
-ESTIMATED = 2
 #: Share of all forces that acts between the ends of a body from which on it is not bent by these alone: of forces there the smallest ones
 #: that do the same work are only about what acts, and of pipes that widen as much as 65 times was found.
 BETWEEN = 0.1
 #: Ways over a body's size by which its energy for small strains is found: the forces' round-off and what is not linear are both below a
 #: ten thousandth of it in bodies that bend, a hundredth of their length thick.
 SMALL = 1e-6
-#: Control points of bodies of the higher order up to which they are computed: a plate of 5500 took 5 seconds and 0.6 GB, one of 20 500 took
-#: 66 and 4, which no run should take for a sentence.
-MOST = 6000
+#: Control points of bodies of the higher order up to which they are computed: a plate of 2100 took about a second and 0.3 GB, one of 20 500
+#: a minute and 4, which no run should take for a sentence.
+MOST = 2500
 
 
 @frozen
@@ -42,7 +40,7 @@ class Locking:
     Attributes
     ----------
     share : float
-        By how much, for the forces that act; zero where there is no telling.
+        By how much, for the forces that act.
     at_ends : bool
         Whether forces act at the ends alone.
     """
@@ -51,14 +49,10 @@ class Locking:
     at_ends: bool
 
 
-#: Of bodies of which there is no telling: what is estimated of them stands, whatever acts at their ends and however much that may be.
-UNKNOWN = Locking(0.0, at_ends=False)
-
-
-def locking(equilibrium: Equilibrium, positions: FloatArray, body: Body, along: int) -> Locking:
+def locking(equilibrium: Equilibrium, positions: FloatArray, body: Body, along: int) -> Locking | None:
     """By how much a body, with all that is glued to it, is too stiff along a direction for the forces that act (theory 9.23).
 
-    Bodies of a low order that forces between their ends bend are estimated better (theory 9.20), and these are not computed.
+    None where there is no telling: bodies that are too large for it, that are folded, or whose poles take forces of others.
 
     Parameters
     ----------
@@ -81,21 +75,18 @@ def locking(equilibrium: Equilibrium, positions: FloatArray, body: Body, along: 
             before.append(replace(one, patch=replace(one.patch, control_points=here)))
         as_it_is = _of(problem, tuple(before), stage)
         acts = np.where(as_it_is.supports.held, 0.0, _together(as_it_is, before, forces))
-        at_ends = _at_ends(as_it_is, _along_them(before, axes), axes, acts)
-        if not at_ends and body.patch.directions[along].order <= ESTIMATED:
-            return UNKNOWN
         for one, own in zip(before, forces, strict=True):
             finer, on_finer = _finer(one, axes.get(one.name), own)
             after.append(finer)
             raised_forces.append(on_finer)
         if sum(len(one.patch.weights) for one in after) > MOST:
-            return UNKNOWN
+            return None
         finest = _of(problem, tuple(after), stage)
         went = _went(as_it_is, _along_them(before, axes), acts)
         would = _went(finest, _along_them(after, axes), _together(finest, after, raised_forces))
     except (InputError, KernelError):  # folded, or control points are one at a pole, and forces on them are others'
-        return UNKNOWN
-    return Locking(would / went - 1.0, at_ends) if went > 0.0 else UNKNOWN
+        return None
+    return Locking(would / went - 1.0, _at_ends(as_it_is, _along_them(before, axes), axes, acts)) if went > 0.0 else None
 
 
 def _along_them(bodies: Sequence[Body], axes: Mapping[str, int]) -> list[Body]:
