@@ -11,7 +11,7 @@ from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.told.after.averages_apart import averages_apart
-from isomortar.told.before.left_out import of_what_is_left_out
+from isomortar.told.before.not_held import not_held_against
 
 #: A block on one that is held, another one on that, and one that is glued to that.
 SCENE = """
@@ -147,5 +147,5 @@ PUSHED = (
 )
 def pushed_one_way() -> dict[str, float]:
     """How many of thirteen."""
-    told = [any("pushes it one way" in said for said in of_what_is_left_out(Scene.from_toml(text).whole())) for text, _ in PUSHED]
+    told = [any("pushes it one way" in said for said in not_held_against(Scene.from_toml(text).whole())) for text, _ in PUSHED]
     return {"wrong": float(sum(found != is_so for found, (_, is_so) in zip(told, PUSHED, strict=True)))}
