@@ -1,8 +1,9 @@
-"""What is said of a scene at a first look and in a run of it, and of the same scene in other units: the same sentences."""
+"""What is said of a scene at a first look and in a run of it, in very small and very large units: the same sentences."""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 
 from told.alike import words
 from told.given_up import ALONE, COHESIVE, ELSEWHERE, TAKEN_AWAY
@@ -26,7 +27,8 @@ from isomortar.scene import Scene
 
 #: Doubts about a number in metres and seconds.
 OF_ONE_UNIT = {"acceleration"}
-#: Other units of length and stress, powers of two: not a bit of a result changes.
+#: Units of length and stress, powers of two: not a bit of a result changes. What is compared with a number of some unit lies between
+#: the two and is said in one alone.
 UNITS = ((2.0**-30, 2.0**40), (2.0**30, 2.0**-40))
 _SAID = Bound(0.0, 0.0, "definition: sentences on a scene in one of two units, and not in the other")
 
@@ -34,6 +36,17 @@ _SAID = Bound(0.0, 0.0, "definition: sentences on a scene in one of two units, a
 def others(one: Counter[tuple[str, ...]], two: Counter[tuple[str, ...]]) -> float:
     """How many sentences are in one alone."""
     return float(((one - two) + (two - one)).total())
+
+
+def in_units(problem: Problem, said_of: Callable[[Problem], Counter[tuple[str, ...]]]) -> float:
+    """How many sentences are said of a problem in one of both units alone."""
+    small, large = (said_of(scaled(problem, *units)) for units in UNITS)
+    return others(small, large)
+
+
+def doubts(problem: Problem) -> Counter[tuple[str, ...]]:
+    """The words of what is doubtful at a first look."""
+    return Counter(words(sentence) for sentence in outlook(problem).warnings)
 
 
 def of_a_run(problem: Problem) -> Counter[tuple[str, ...]]:
@@ -46,17 +59,12 @@ def of_a_run(problem: Problem) -> Counter[tuple[str, ...]]:
 @case(
     claim="What is doubtful of a scene does not depend on its units, whatever the doubt is.",
     tier="gate",
-    grid={"units": tuple(range(len(UNITS)))},
     bounds={"others": _SAID},
 )
-def doubtful_in_units(units: int) -> dict[str, float]:
+def doubtful_in_units() -> dict[str, float]:
     """How many, over all scenes of which something is doubtful."""
-    found = 0.0
-    for text, old, new, *_ in (scene for name, scene in DOUBTFUL.items() if name not in OF_ONE_UNIT):
-        problem = Scene.from_toml(text.replace(old, new)).problem()
-        said = [Counter(words(sentence) for sentence in outlook(of).warnings) for of in (problem, scaled(problem, *UNITS[units]))]
-        found += others(*said)
-    return {"others": found}
+    scenes = (scene for name, scene in DOUBTFUL.items() if name not in OF_ONE_UNIT)
+    return {"others": sum(in_units(Scene.from_toml(text.replace(old, new)).problem(), doubts) for text, old, new, *_ in scenes)}
 
 
 @case(
@@ -67,9 +75,7 @@ def doubtful_in_units(units: int) -> dict[str, float]:
 )
 def runs_in_units(run: str) -> dict[str, float]:
     """How many."""
-    problem = Scene.from_toml((RUNS | PLATES)[run][0]).problem()
-    said = of_a_run(problem)
-    return {"others": sum(others(said, of_a_run(scaled(problem, *units))) for units in UNITS)}
+    return {"others": in_units(Scene.from_toml((RUNS | PLATES)[run][0]).problem(), of_a_run)}
 
 
 #: Load steps that are given up: bodies that tip, lift, or slide, move freely, or go to and fro, and averages that are apart.
@@ -96,6 +102,4 @@ def why(problem: Problem) -> Counter[tuple[str, ...]]:
 )
 def given_up_in_units(scene: str) -> dict[str, float]:
     """How many."""
-    problem = Scene.from_toml(GIVEN_UP[scene], overrides=["solver.max_cuts=1"]).problem()
-    said = why(problem)
-    return {"others": sum(others(said, why(scaled(problem, *units))) for units in UNITS)}
+    return {"others": in_units(Scene.from_toml(GIVEN_UP[scene], overrides=["solver.max_cuts=1"]).problem(), why)}
