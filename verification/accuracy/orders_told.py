@@ -66,7 +66,7 @@ def run(plan: Plan, chosen: Discretisation, folder: Path) -> Measurement:
 @case(
     claim="A report of orders and meshes tells what its reference is off by, of however few load steps, and to half of what is seen by "
     "twice the elements; where elements do not matter, that is nothing.",
-    tier="gate",
+    tier=lambda name: "nightly" if name in ("tilted", "in two load steps") else "gate",
     grid={"name": tuple(SCENES)},
     bounds={
         "unknown": Bound(0.0, 0.0, "definition: measures of which it is not told though changes fall, or are round-off"),

@@ -69,7 +69,7 @@ def killed_while_writing(way: str) -> dict[str, float]:
         isomortar.run(Scene.from_toml(SCENE), results).close()
         WAYS[way](results, whole)
         wanted = contents(whole)
-        for number, moment in enumerate(np.quantile([len(content) for content in wanted.values()], MOMENTS)):
+        for number, moment in enumerate(np.unique(np.quantile([len(content) for content in wanted.values()], MOMENTS))):
             folder = Path(name) / f"killed-{number}"
             kills += killed(lambda folder=folder: WAYS[way](results, folder), int(0.9 * moment))  # type: ignore[misc]
             parts += sum(wanted.get(file) != content for file, content in contents(folder).items())
