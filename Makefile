@@ -37,8 +37,9 @@ manual: $(READY) ## run the blocks of the manual and build it; it goes to result
 wheel: $(READY) ## a wheel that needs nothing of the machine, in dist/, tried in an empty environment
 	@bash tools/build_wheel.sh
 
+# One process more than there are cores: where one waits, for the disk or for processes of its own, another one goes on.
 test: lint ## linters, then all tests
-	$(BIN)/python -m pytest -n auto --dist loadfile
+	$(BIN)/python -m pytest -n $$(($$(nproc) + 1)) --dist loadfile
 
 lint: $(READY) ## formatters and linters, nothing is changed
 	@bash tools/lint.sh

@@ -4,12 +4,15 @@ set -uo pipefail
 cd "$(dirname "$0")/.."
 export PATH="$PWD/.venv/bin:$PATH"
 
-failed=()
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+names=() processes=()
+
+# All are at work at the same time; what they say comes one after another.
 check() {
-  local name=$1
-  shift
-  printf '==> %s\n' "$name"
-  "$@" || failed+=("$name")
+  names+=("$1")
+  "${@:2}" > "$out/$1" 2>&1 &
+  processes+=($!)
 }
 
 # Without the import hook of the editable install, behind which import-linter finds no files. The standard library comes before
@@ -23,14 +26,28 @@ from importlinter.cli import lint_imports_command
 lint_imports_command()' "$(python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')"
 }
 
+# The package, then the cases: both keep what they know of a file in one place.
+types() {
+  local failed=0
+  mypy || failed=1
+  mypy verification || failed=1
+  return $failed
+}
+
+check "compiler warnings" bash tools/build_debug.sh
+check "types (mypy)" types
 check "Python format (ruff format)" ruff format --quiet --check .
 check "Python (ruff)" ruff check --quiet --output-format=concise .
-check "types (mypy)" mypy
-check "types of the cases (mypy)" mypy verification
 check "layers of the package (import-linter)" layers
 check "Fortran format (findent)" bash tools/format_fortran.sh --check
 check "Fortran (fortitude)" fortitude check --quiet --output-format=concise
-check "compiler warnings" bash tools/build_debug.sh
+
+failed=()
+for number in "${!names[@]}"; do
+  printf '==> %s\n' "${names[number]}"
+  wait "${processes[number]}" || failed+=("${names[number]}")
+  cat "$out/${names[number]}"
+done
 
 if [ ${#failed[@]} -gt 0 ]; then
   printf 'failed: %s\n' "${failed[@]}" >&2
