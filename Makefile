@@ -6,6 +6,9 @@
 export OPENBLAS_NUM_THREADS ?= 1
 test verify nightly: export OMP_NUM_THREADS ?= 1
 
+# Compiled modules are kept, whatever the machine says: tests and cells start hundreds of processes, and a third of a start is compiling.
+unexport PYTHONDONTWRITEBYTECODE
+
 BIN := .venv/bin
 READY := .venv/set-up
 
