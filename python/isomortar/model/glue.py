@@ -23,6 +23,11 @@ def pieces(problem: Problem) -> tuple[tuple[Body, ...], ...]:
     return tuple(found.values())
 
 
+def names_together(problem: Problem) -> list[set[str]]:
+    """Names of bodies that are glued together."""
+    return [{body.name for body in piece} for piece in pieces(problem)]
+
+
 def shared_directions(problem: Problem) -> tuple[tuple[tuple[str, str], ...], ...]:
     """Directions that have one mesh, as faces that are glued share it: each body and letter once, with all that it shares it with."""
     places = [(body.name, letter) for body in problem.bodies for letter in "uvw"]

@@ -10,7 +10,7 @@ import numpy as np
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.model.constants import SAME_POINT
 from isomortar.model.entities import Body, Face, Problem
-from isomortar.model.glue import pieces
+from isomortar.model.glue import names_together
 from isomortar.told.before.meeting import meet
 
 
@@ -24,11 +24,6 @@ def of_what_is_left_out(problem: Problem) -> Iterator[str]:
         )
     yield from _idle_bodies(problem, {name for pair in through for name in pair})
     yield from _missing_symmetry(problem)
-
-
-def names_together(problem: Problem) -> list[set[str]]:
-    """Names of bodies that are glued together."""
-    return [{body.name for body in piece} for piece in pieces(problem)]
 
 
 def _in_contact(problem: Problem) -> list[set[str]]:

@@ -8,8 +8,8 @@ import numpy as np
 
 from isomortar.geometry.faces import cells
 from isomortar.model.entities import Contact, Face, Problem
+from isomortar.model.glue import names_together
 from isomortar.model.sheet import Sheet
-from isomortar.told.before.left_out import names_together
 
 
 def not_held_against(problem: Problem) -> Iterator[str]:
