@@ -29,16 +29,17 @@ SHOWN = 15
 
 @dataclass(frozen=True)
 class Part:
-    """A command of isomortar, and the page that it leaves."""
+    """A command of isomortar, or of another program, and the page that it leaves, if any."""
 
     name: str
     arguments: tuple[str, ...]
-    page: Path
+    page: Path | None
+    program: str = "isomortar"
 
     @property
     def command(self) -> str:
         """As a person would type it."""
-        return " ".join(("isomortar", *self.arguments))
+        return " ".join((self.program, *self.arguments))
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,7 @@ PARTS = (
     Part("extremes", ("report", "extremes", "--tier", "nightly"), Path("results/verification/extremes.html")),
     Part("published", ("report", "published"), Path("results/verification/published.html")),
     *(Part(f"orders-{s}", ("report", "orders", s), Path(f"results/orders-{s}/report.html")) for s in ("press", "twist", "iron", "tire")),
+    Part("tests", ("-q", "-m", "nightly", "tests"), None, "pytest"),
     Part("benchmarks", ("bench",), Path("results/bench/bench.html")),
 )
 
@@ -63,7 +65,7 @@ def run(part: Part, folder: Path) -> Ending:
     """Run one part; what it prints goes to its log."""
     start = time.monotonic()
     with (folder / f"{part.name}.log").open("w", encoding="utf-8") as log:
-        command = [sys.executable, "-m", "isomortar", *part.arguments]
+        command = [sys.executable, "-m", part.program, *part.arguments]
         ended = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT)
     return Ending(part.name, ended.returncode, (time.monotonic() - start) / 60.0)
 
@@ -87,7 +89,7 @@ def write(folder: Path, parts: Sequence[Part], endings: Sequence[Ending], begun:
     rows = []
     for part, ending in zip(parts, endings, strict=False):
         lines = (folder / f"{part.name}.log").read_text(encoding="utf-8", errors="replace").splitlines()
-        page = os.path.relpath(ROOT / part.page, folder) if (ROOT / part.page).exists() else ""
+        page = os.path.relpath(ROOT / part.page, folder) if part.page and (ROOT / part.page).exists() else ""
         rows.append({"part": part, "ending": ending, "page": page, "end": "\n".join(lines[-SHOWN:]) if ending.code else ""})
     text = template("nightly.html", Path(__file__)).render(
         rows=rows,

@@ -346,6 +346,7 @@ def test_a_survivor_whose_patience_is_spent_meets_what_is_new(tmp_path, monkeypa
     assert survivors() == ["mutants_four/held"]
 
 
+@pytest.mark.nightly  # builds the kernel four times: a tenth of the whole gate
 def test_a_campaign_with_a_real_kernel(tmp_path, monkeypatch):
     monkeypatch.chdir(ROOT)
     family = tmp_path / "cases" / "mutants_real"

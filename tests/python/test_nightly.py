@@ -48,9 +48,15 @@ def test_parts_are_commands_that_there_are(nightly):
 
     from isomortar.cli.commands import app
 
-    for part in nightly.PARTS:
+    for part in (part for part in nightly.PARTS if part.program == "isomortar"):
         options = [word for word in part.arguments if not word.startswith("--")]
         shown = CliRunner().invoke(app, [*options[: 2 if options[0] == "report" else 1], "--help"])
         assert shown.exit_code == 0, part.command
         assert all(word in shown.output for word in part.arguments if word.startswith("--")), part.command
         assert str(part.page.parent) in shown.output.replace("NAME", options[-1]), part.command
+
+
+def test_tests_of_the_night_are_there_and_are_run(nightly):
+    marked = [path for path in (ROOT / "tests").rglob("test_*.py") if "@pytest.mark.nightly" in path.read_text() and path != Path(__file__)]
+    assert marked
+    assert ("pytest", ("-q", "-m", "nightly", "tests")) in [(part.program, part.arguments) for part in nightly.PARTS]

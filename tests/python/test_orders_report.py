@@ -95,17 +95,17 @@ def test_a_lagrange_scene_counts_its_nodes():
 
 
 def test_every_kind_gets_four_meshes_that_an_order_can_be_told_from():
-    for name in bundled_scenes():
-        for quick in (False, True):
-            plan = Plan.of(Scene.load(name), quick=quick)
-            sizes = {kind: np.array([plan.size(each) for each in plan.meshes(kind)]) for kind in plan.kinds}
-            for of_kind in sizes.values():
-                assert len(of_kind) >= 4
-                assert (of_kind[:-1] >= 1.2 * of_kind[1:]).all()
-            coarse, medium, fine = map(plan.size, plan.reference)
-            assert coarse == pytest.approx(2 * medium)
-            assert medium == pytest.approx(2 * fine)
-            assert all((fine < 0.501 * of_kind).all() for kind, of_kind in sizes.items() if kind[0] == "N")
+    whole = [(name, False) for name in ("press", "iron", "tire")]
+    for name, quick in [*whole, *((name, True) for name in bundled_scenes())]:
+        plan = Plan.of(Scene.load(name), quick=quick)
+        sizes = {kind: np.array([plan.size(each) for each in plan.meshes(kind)]) for kind in plan.kinds}
+        for of_kind in sizes.values():
+            assert len(of_kind) >= 4
+            assert (of_kind[:-1] >= 1.2 * of_kind[1:]).all()
+        coarse, medium, fine = map(plan.size, plan.reference)
+        assert coarse == pytest.approx(2 * medium)
+        assert medium == pytest.approx(2 * fine)
+        assert all((fine < 0.501 * of_kind).all() for kind, of_kind in sizes.items() if kind[0] == "N")
 
 
 @pytest.mark.parametrize("kinds", [["N0"], ["N11"], ["L5"], ["Q2"], ["N"]])
