@@ -9,6 +9,7 @@ import subprocess
 import sys
 from concurrent.futures import Future
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -31,6 +32,20 @@ def test_measured_once_until_something_changes(root):
     assert not any(r.fresh for r in again.values())
     assert {n: r.measurement.numbers for n, r in again.items()} == {n: r.measurement.numbers for n, r in first.items()}
     assert all(r.fresh for r in measured(root, fresh=True).values())
+
+
+def test_all_of_the_package_that_a_run_loads_counts():
+    """Numbers and sentences depend on it, whatever a case imports itself."""
+    loads = "import sys, isomortar.driver, isomortar.march.outlook, isomortar.results"
+    tell = "print(*(f for m in list(sys.modules.values()) if (f := getattr(m, '__file__', None))), sep='\\n')"
+    told = subprocess.run([sys.executable, "-c", f"{loads}; {tell}"], capture_output=True, text=True, check=True).stdout
+    package = [Path(line) for line in told.splitlines() if Path(line).is_relative_to(store._PACKAGE)]
+    assert {"told", "solve", "march", "scene", "results"} <= {path.relative_to(store._PACKAGE).parts[0] for path in package}
+    assert not [path for path in package for aside in store._ASIDE if path.is_relative_to(aside)]
+
+
+def test_where_a_file_ends_counts():
+    assert store._hash([b"a", b"bc"]) != store._hash([b"ab", b"c"])
 
 
 def test_the_key_holds_what_the_numbers_depend_on(root):

@@ -17,26 +17,40 @@ from isomortar.harness.report import stated
 CASES = Path(__file__).parents[2] / "verification"
 
 
-def test_the_quick_studies_from_end_to_end(tmp_path):
-    command = [sys.executable, "-m", "isomortar", "paper", "--quick", "-j", "1", "--out", str(tmp_path / "out"), "--cases", str(CASES)]
+def drawn(folder: Path, *studies: str) -> tuple[dict, str]:
+    """What the quick studies of some scenes leave: all of it as data, and the page."""
+    command = [sys.executable, "-m", "isomortar", "paper", "--quick", "-j", "1", "--out", str(folder), "--cases", str(CASES), *studies]
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     first = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
     assert first.returncode == 0, first.stdout + first.stderr
-    data = json.loads((tmp_path / "out/paper.json").read_text())
+    data, page = json.loads((folder / "paper.json").read_text()), (folder / "paper.html").read_text()
+    assert data["verdicts"]["not measured"] == 0
+    assert page.count("<svg") + page.count("<img") == len(list((folder / "figures").iterdir()))
+    assert not re.search(r'(src|href)="(?!#|data:)', page)  # it needs nothing else
+    return data, page
+
+
+def test_a_quick_study_from_end_to_end(tmp_path):
+    data, page = drawn(tmp_path, "--study", "press")
+    runs = {(run["key"], run["method"]): run for run in data["runs"]}
+    assert {key.split("-")[0] for key, _ in runs} == {"press"}
+    assert runs["press-N2", "paper"]["augmentations"] > runs["press-N2", "monolithic"]["augmentations"]
+    assert 0 < runs["press-N2", "monolithic"]["from_the_papers_method"] < 0.1
+    assert "isomortar run press --set" in page
+
+
+@pytest.mark.nightly
+def test_the_quick_studies_from_end_to_end(tmp_path):
+    data, page = drawn(tmp_path)
     runs = {(run["key"], run["method"]): run for run in data["runs"]}
     assert {key.split("-")[0] for key, _ in runs} == {"press", "twist", "iron", "tire"}
     assert all(run["failure"] is None or "-L" in key for (key, _), run in runs.items())
     assert runs["iron-N3", "monolithic"]["load_steps"] == [8, 8]
-    assert runs["press-N2", "paper"]["augmentations"] > runs["press-N2", "monolithic"]["augmentations"]
-    assert 0 < runs["press-N2", "monolithic"]["from_the_papers_method"] < 0.1
-    assert data["verdicts"]["not measured"] == 0
     by_text = {statement["text"]: statement for statement in data["statements"]}
     non_negative = by_text["NURBS deliver a pressure distribution that is nowhere negative."]
     assert non_negative["verdict"] == "holds"  # theory: non-negative functions
     assert set(non_negative["by_method"]) == {"monolithic", "paper"}
-    page = (tmp_path / "out/paper.html").read_text()
-    assert page.count("<svg") + page.count("<img") == len(list((tmp_path / "out/figures").iterdir())) > 15
-    assert not re.search(r'(src|href)="(?!#|data:)', page)  # it needs nothing else
+    assert len(list((tmp_path / "figures").iterdir())) > 15
     assert "isomortar run iron --set" in page
 
 
