@@ -151,7 +151,7 @@ ANY = {"value": Bound(at_least=-1e9, at_most=1e9, reason="theory: so")}
     [
         "text", "1.0", 1j, [[1.0], [1.0, 2.0]], {"a": 1.0}, object(), True, [True, False], np.bool_(False), np.ma.masked, [1.0, None],
         np.ma.array([1.0], mask=[True]), np.array([1.0], object), 10**400, 2**53 + 1, np.array([2**60]), np.zeros(1, [("a", float)]),
-        [np.ma.array([1.0], mask=[True])], np.datetime64(1, "s"), b"1", (x for x in [1.0]), Convergence(H, [None] * 4, ALONE),
+        -(2**53) - 1, [np.ma.array([1.0], mask=[True])], np.datetime64(1, "s"), b"1", (x for x in [1.0]), Convergence(H, [None] * 4, ALONE),
         Convergence([True] * 4, H, ALONE), Curve(H, ["a"], "x", "y"),
     ],
 )  # fmt: skip

@@ -1,6 +1,8 @@
 """A small folder of cases, as the command and the pytest plugin run them."""
 
 import json
+import resource
+import subprocess
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -13,7 +15,7 @@ from isomortar.cli.commands import app
 from isomortar.errors import InputError
 from isomortar.harness import history
 from isomortar.harness.collection import collect, find
-from isomortar.harness.measurement import measure
+from isomortar.harness.measurement import measure, used
 from isomortar.harness.runner import select
 
 BAD = """
@@ -38,6 +40,10 @@ def raising():
 @case(claim="Has no memory.", bounds=B)
 def full():
     raise MemoryError
+
+@case(claim="Lacks a file.", bounds=B)
+def lacking():
+    raise FileNotFoundError("no such file")
 
 @case(claim="Does not converge.", bounds=B)
 def unsolved():
@@ -69,14 +75,25 @@ def test_bad_cells_fail_and_the_run_goes_on(root, monkeypatch):
     states = {name: result.state for name, result in results.items() if "[" not in name}
     assert states == {
         "crash": "crashed", "leaving": "crashed",
-        "raising": "crashed", "full": "failed", "unsolved": "failed", "skipping": "skipped", "nan": "failed", "late": "timed out",
-        "printing": "passed",
+        "raising": "crashed", "full": "failed", "lacking": "failed", "unsolved": "failed", "skipping": "skipped", "nan": "failed",
+        "late": "timed out", "printing": "passed",
     }  # fmt: skip
     assert "SIGABRT" in results["crash"].measurement.message
     assert "no such thing" in results["raising"].measurement.message
     again = measured(root)
     kept = {name for name, result in again.items() if not result.fresh and "[" not in name}
     assert kept == {"nan", "printing", "unsolved"}  # the others may be the machine's fault, or be there the next time
+
+
+def test_what_children_cost_counts():
+    def of_children() -> float:
+        usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return usage.ru_utime + usage.ru_stime
+
+    before, children = used(), of_children()
+    subprocess.run([sys.executable, "-c", "sum(range(10**6))"], check=True)
+    assert of_children() > children
+    assert used() - before >= of_children() - children
 
 
 def test_selection(root):
