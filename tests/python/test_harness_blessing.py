@@ -41,9 +41,10 @@ def test_blessing(root):
         Reference(Path("references/kept"))
 
 
-def test_only_a_green_run_is_blessed(root):
+@pytest.mark.parametrize("measured", ['"error": 2.0', '"error": None', '"error": float("nan")'])
+def test_only_a_green_run_is_blessed(root, measured):
     family = next(root.glob("family_*"))
-    family.joinpath("match.py").write_text(MATCH.replace('"error": 0.0', '"error": 2.0'))
+    family.joinpath("match.py").write_text(MATCH.replace('"error": 0.0', measured))
     with pytest.raises(InputError, match="green"):
         CliRunner().invoke(
             app, ["bless", f"{family.name}/same", "--reason", "x", "--yes", "--cases", str(root), "-j", "1"], catch_exceptions=False
@@ -81,10 +82,11 @@ def test_over_refined_is_what_has_measured_its_uncertainty(root):
     assert [float(kept._expected[f"kind={kind}/value"].uncertainty) for kind in ("N1", "N2")] == [2e-3, 2e-9]  # the stated 1e-9 at least
 
 
-def test_what_is_worth_more_than_a_run_is_not_replaced(root):
+@pytest.mark.parametrize("kind", ["exact", "other code"])
+def test_what_is_worth_more_than_a_run_is_not_replaced(root, kind):
     family = next(root.glob("family_*"))
     family.joinpath("match.py").write_text(MATCH)
-    record = {"title": "t", "class": "exact", "origin": "o", "made": "m", "uncertainty": "u"}
+    record = {"title": "t", "class": kind, "origin": "o", "made": "m", "uncertainty": "u"}
     write_reference(Path("references/kept"), {"value": (np.array([1.0]), 0.1)}, record)
     command = ["bless", f"{family.name}/same", "--reason", "x", "--yes", "--cases", str(root), "--references", "references", "-j", "1"]
     with pytest.raises(InputError, match="does not replace"):
