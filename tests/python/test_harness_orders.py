@@ -68,6 +68,22 @@ def test_other_errors_per_mesh():
     assert "quadrature" in estimate.why
 
 
+@pytest.mark.parametrize(("mesh", "judgement"), [(0, "confirmed"), *((mesh, "at the floor") for mesh in (1, 2, 3, 4))])
+def test_the_budget_is_kept_on_every_mesh_of_the_regression(mesh, judgement):
+    quadrature = 0.05 * H**2
+    quadrature[mesh] *= 3
+    assert estimate_order(Convergence(H, H**2, {"quadrature": quadrature}), 2).judgement == judgement
+
+
+def test_what_falls_too_slowly_all_along_is_at_no_floor():
+    assert estimate_order(Convergence(H, H, ALONE), 3).judgement == "pre-asymptotic"
+
+
+def test_what_stands_still_on_the_finest_mesh_alone_does_not_fall():
+    estimate = estimate_order(Convergence(H, [1.0, 0.5, 0.25, 0.125, 0.125], ALONE), 2)
+    assert (estimate.judgement, "on the finest mesh" in estimate.why) == ("diverging", True)
+
+
 def test_a_floor_is_seen_without_a_budget():
     assert estimate_order(Convergence(H, H**4 + 2e-5, ALONE), 4).judgement == "at the floor"
 
