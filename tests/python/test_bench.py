@@ -214,6 +214,10 @@ def test_history_survives_a_line_that_was_cut_short(tmp_path: Path) -> None:
     history.append(path, ran, datetime.now().astimezone())
     assert len(path.read_text().splitlines()) == whole + 1
     assert history.read(path, ran.benchmark.name).values("N2", "time") == [2.0]
+    for number in range(history._SHOWN):
+        history.append(path, Answer(declared([]), ({"kind": "N3", "time": float(number)},), Cost()), datetime.now().astimezone())
+    assert history.read(path, ran.benchmark.name).values("N3", "time") == list(range(history._SHOWN))
+    assert all(map(math.isnan, history.read(path, ran.benchmark.name).values("N2", "time")))
 
 
 SLEEPING = """

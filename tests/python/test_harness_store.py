@@ -215,6 +215,16 @@ def test_a_line_that_was_cut_short_does_not_take_the_next_one_with_it(root, tmp_
     assert [sorted(run.cells) for run in runs] == [sorted(result.cell.name for result in results)] * 2
 
 
+def test_the_last_runs_are_looked_back_on(tmp_path):
+    path = tmp_path / "history.jsonl"
+    cells = [{"values": {"error": float(number)}} for number in range(5)]
+    lines = [json.dumps({"when": "", "program": "", "cells": {"one": cell} if number else {}}) for number, cell in enumerate(cells)]
+    path.write_text("\n".join(lines) + "\n")
+    assert history.values_of(history.read(path, 3), "one", "error") == [2.0, 3.0, 4.0]
+    assert np.isnan(history.values_of(history.read(path), "one", "error")[0])
+    assert np.isnan(history.values_of(history.read(path), "one", "other")).all()
+
+
 def test_history_marks_changes_and_not_noise():
     rng = np.random.default_rng(1)
     noise = 1 + 0.01 * rng.standard_normal(30)
