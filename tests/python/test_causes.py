@@ -123,6 +123,7 @@ def test_a_sound_scene_gives_no_cause() -> None:
         ({"METHOD": "uzawa", "PENALTY": 1e4}, "a penalty of 10000,"),
         ({"SLAVE": 1, "MASTER": 8}, "contacts.c.quadrature = [16, 16]"),
         ({"SLIP": 1e-4}, "an elastic slip of 0.0001, where the slave is 1 large"),
+        ({"SLIP": 1e-4, "WIDE": 3}, "an elastic slip of 0.0001, where the slave is 1 large"),
     ],
 )
 def test_each_cause_is_named_alone(changes: dict[str, Any], words: str) -> None:

@@ -107,3 +107,22 @@ def test_multipliers_that_no_condition_tells_stay() -> None:
     pressure, traction = multipliers_ahead(pair, start, rates, 0.5)  # type: ignore[arg-type]
     assert np.array_equal(pressure, [0.0, 1.0, 1.5])
     assert np.array_equal(traction, [[-0.5, -0.5], [-0.5, -0.5], [7.0, 7.0]])
+
+
+@pytest.mark.parametrize(("before", "after"), [((0.0, 1.0, 1.0), (1.0, 1.0, 1.0)), ((1.0, 2.0, 0.0), (0.0, 0.0, 3.0)), ((0.0,) * 3,) * 2])
+def test_a_front_that_moves_is_no_beginning(before: tuple[float, ...], after: tuple[float, ...]) -> None:
+    """Constraints close and open all along a contact's way; nor does one begin that is open before and after."""
+    old, new = (
+        replace(state, contacts=(replace(state.contacts[0], pressure=np.array(pressure)),))
+        for state, pressure in ((some_state(0.0, 0.0), before), (some_state(1.0, 0.0), after))
+    )
+    rates = with_rates(old, new, 1.0, 0.5).rates
+    assert rates is not None
+    assert np.array_equal(rates.contacts[0].pressure, 2.0 * (np.array(after) - before))
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_one_contact_of_two_that_begins_is_enough(first: bool) -> None:
+    (goes_on,), (begins,) = some_state(0.0, 1.0).contacts, some_state(0.0, 0.0).contacts
+    before = replace(some_state(0.0, 1.0), contacts=(begins, goes_on) if first else (goes_on, begins))
+    assert with_rates(before, replace(some_state(1.0, 1.0), contacts=(goes_on, goes_on)), 1.0, 1.0).rates is None

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from itertools import accumulate, repeat
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from isomortar.solve.newton import observed_order
+from isomortar.model.constants import MOST_TANGENTS
+from isomortar.solve.newton import Newton, observed_order
 from isomortar.solve.record import IterationRecord
 
 ROUND_OFF = 2e-12
@@ -45,3 +47,11 @@ def test_changing_states_and_measures_are_left_out() -> None:
 def test_too_few_iterations() -> None:
     assert np.isnan(observed_order([], ROUND_OFF))
     assert np.isnan(observed_order(log([1.0, 0.1]), ROUND_OFF))
+
+
+@pytest.mark.parametrize("advances", [True, False])
+@pytest.mark.parametrize("most", [1, 7])
+def test_a_loop_has_its_tangents_and_so_many_times_as_many_while_a_front_gets_on(most: int, advances: bool) -> None:
+    loop = SimpleNamespace(_settings=SimpleNamespace(max_iterations=most), _trail=SimpleNamespace(advances=advances))
+    taken = next(count for count in range(10 * MOST_TANGENTS * most) if Newton._spent(loop, count))  # type: ignore[arg-type]
+    assert taken == most * (MOST_TANGENTS if advances else 1)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import re
+from itertools import combinations
 from pathlib import Path
 
 import pytest
@@ -281,3 +282,61 @@ def test_sizes_that_no_number_holds_are_refused_before_they_are_squared(size: st
 def test_names_of_other_letters_say_which_letters_names_have() -> None:
     with pytest.raises(InputError, match=r"not valid TOML.*Names have letters from a to z, digits, _ and -$"):
         Scene.from_toml("format = 1\nbodies.klötzchen = {}\n")
+
+
+#: A block, and four of what has a name: stages, curves of a record, supports that push; and loads beside these.
+MANY = """
+format = 1
+bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
+supports.base.face = "block.w0"
+"""
+PLACES = ("w1.u0", "w1.u1", "w1.v0", "w1.v1")
+WEIGHTS = "".join(f'loads.{name} = {{ body = "block", weight = [0, 0, -1] }}\n' for name in ("kept", "other"))
+PUSHED = 'supports.{} = {{ edge = "block.{}", components = ["x"], force.z = -0.1 }}\n'
+
+
+@pytest.mark.parametrize(("first", "second"), [*combinations(range(4), 2)])
+def test_a_name_that_comes_twice_is_refused_wherever_it_stands(first: int, second: int) -> None:
+    names = ["one", "two", "three", "four"]
+    names[second] = names[first]
+    stages = "stages = [{}]\n".format(", ".join(f'{{ name = "{name}", steps = 1 }}' for name in names))
+    curves = "".join(f'[[record.curves]]\nname = "{name}"\nsupport = "base"\n' for name in names)
+    for text, field, said in (
+        (stages, f"stages.{second}.name", f"{names[first]!r} is the name of two stages"),
+        (
+            'stages = [{ name = "rest", steps = 1 }]\n' + curves,
+            f"record.curves.{second}.name",
+            f"{names[first]!r} is the name of two curves",
+        ),
+    ):
+        with pytest.raises(InputError, match=said) as error:
+            Scene.from_toml(MANY + text).problem()
+        assert error.value.field == field
+
+
+@pytest.mark.parametrize("which", range(4))
+def test_each_support_that_pushes_is_looked_for_among_loads(which: int) -> None:
+    names = ["one", "two", "three", "four"]
+    names[which] = "other"
+    supports = "".join(PUSHED.format(name, place) for name, place in zip(names, PLACES, strict=True))
+    with pytest.raises(InputError, match="is the name of a load as well") as error:
+        Scene.from_toml(MANY + supports + WEIGHTS + 'stages = [{ name = "push", steps = 1 }]').problem()
+    assert error.value.field == "supports.other"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("bloc.w0", "there is no body 'bloc'; allowed: BODY.FACE with BODY one of block, a"),
+        ("w0", "names no face; allowed: BODY.FACE with BODY one of a, block"),
+        ("block.w0.x", "there is no body 'block.w0'; allowed: BODY.FACE with BODY one of block, a"),
+        ("blo.w0", "there is no body 'blo'; allowed: BODY.FACE with BODY one of block, a"),
+    ],
+)
+def test_a_face_of_no_body_names_the_bodies_the_nearest_first(text: str, said: str) -> None:
+    a = 'bodies.a.geometry = { kind = "box", lower = [5, 0, 0], upper = [6, 1, 1] }\n'
+    scene = MANY.replace("bodies.block", a + "bodies.block", 1) + f'supports.side.face = "{text}"\nstages = [{{ name = "s", steps = 1 }}]'
+    with pytest.raises(InputError) as error:
+        Scene.from_toml(scene).problem()
+    assert said in str(error.value)
+    assert error.value.field == "supports.side.face"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from told.wrong.sides import ALL, GOOD, PAIR, WRONG
 
 import isomortar
 from isomortar.errors import InputError
+from isomortar.geometry.patch import Direction, Patch
 from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Faces
 from isomortar.model.sheet import Sheet
@@ -101,3 +103,25 @@ def test_other_programs_are_not_told_of_several_faces() -> None:
     with pytest.raises(InputError, match="is not told of sides of several faces") as error:
         GetFEM().run(Scene.from_toml(free).problem())
     assert error.value.field == "contacts.pair.master"
+
+
+def test_elements_of_a_side_are_as_long_as_the_middle_one_of_each_direction_along_it() -> None:
+    """However deep its body is, and however long the longest."""
+    text = GOOD.replace(PAIR, '"d.w1"')
+    body = replace(Scene.from_toml(text).problem().bodies[0], name="d")
+    for knots, deep in (((0.0, 0.1, 0.2, 1.0), 1.0), ((0.0, 0.5, 0.6, 1.0), 9.0)):
+        across, along = Direction("N", 1, np.repeat(knots, [2, 1, 1, 2])), Direction("N", 1, np.array([0.0, 0.0, 1.0, 1.0]))
+        points = np.array([[x, 3.0 * y, deep * z] for z in (0, 1) for y in (0, 1) for x in knots])
+        patch = Patch((across, along, along), points, np.ones(len(points)))
+        middle = float(np.median(np.diff(knots)))
+        assert Sheet.of_face(replace(body, patch=patch), "w1").element_size == pytest.approx(np.sqrt(3.0 * middle))
+        assert Sheet.of_face(replace(body, patch=patch), "v1").element_size == pytest.approx(np.sqrt(deep * middle))
+
+
+def test_a_face_that_comes_again_later_is_named() -> None:
+    names = ["a.w1", "b.w1", "c.w1", "d.w1"]
+    for first, second in combinations(range(4), 2):
+        faces = names.copy()
+        faces[second] = faces[first]
+        with pytest.raises(InputError, match=f"names {names[first]} twice"):
+            Scene.from_toml(GOOD.replace(PAIR, str(faces).replace("'", '"'))).problem()

@@ -2,23 +2,36 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections import Counter
 from dataclasses import replace
 
 import numpy as np
+from told.alike import words
 from told.other_units import of_a_run, others
 from told.runs import LONG, PLATES
+from told.word_by_word import SENTENCES
+from told.wrong.doubts import DOUBTFUL
 from told.wrong.runs import RUNS
 from transforms import moved
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Contact, Face, Faces, Problem, RigidPlane
 from isomortar.scene import Scene
+from isomortar.told.before.doubts import doubts
 
 #: How far the other one is away, in sizes of the largest body: far from the origin positions have fewer digits.
 APART = 3.0
 #: What the names of the other one end with: no letter, which `words` would see.
 MARK = "2"
+#: Doubts about a scene as a whole, its settings, or what cuts it through: of two there is no half, and none of them alone does nothing.
+OF_THE_WHOLE = {
+    *("nothing moves", "all rigid", "idle stage", "loose", "setting of the first method", "setting of the other method"),
+    *("half a ring", "other unit of moduli"),
+}
+#: Of scenes of two bodies, which take longer, those of what supports hold, and of what no contact or load reaches.
+OF_TWO_BODIES = {"held on one side", "held twice", "idle body", "not held against", "two planes", "plane and body"}
 
 
 def doubled(problem: Problem) -> Problem:
@@ -59,3 +72,25 @@ def each(run: str) -> dict[str, float]:
     problem = Scene.from_toml((RUNS | PLATES)[run][0]).problem()
     once = of_a_run(problem)
     return {"others": others(Counter({said: 2 * count for said, count in once.items()}), of_a_run(doubled(problem)))}
+
+
+@case(
+    claim="What is doubtful of a body, a contact, a support or a load before a run is told of each of which it is true, as often.",
+    tier="gate",
+    bounds={
+        "others": Bound(0.0, 0.0, "definition: scenes whose sentence is not there twice, once for each half, or beside which another is"),
+        "scenes": Bound(at_least=40.0, reason="definition: or next to nothing is tried"),
+    },
+    files=[SENTENCES],
+)
+def each_doubt() -> dict[str, float]:
+    """How many."""
+    expected, tried, off = tomllib.loads(SENTENCES.read_text(encoding="utf-8"))["doubtful"], 0, 0
+    for name, (text, old, new, *_) in DOUBTFUL.items():
+        problem = Scene.from_toml(text.replace(old, new)).problem()
+        if name in OF_THE_WHOLE or (len(problem.bodies) > 1 and name not in OF_TWO_BODIES):
+            continue
+        both = doubled(problem)
+        said = Counter(map(words, doubts(both, Simulation(both).state)))
+        tried, off = tried + 1, off + (said != Counter({words(sentence): 2 for sentence in expected[name].split("\n")}))
+    return {"others": float(off), "scenes": float(tried)}

@@ -20,7 +20,7 @@ geometry = { kind = "box", lower = [0, 0, 1], upper = [1, 1, TOP] }
 mesh = { order = [2, 2, 1], elements = [SLAVE, SLAVE, 1] }
 [bodies.lower]
 material = "soft"
-geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
+geometry = { kind = "box", lower = [0, 0, 0], upper = [WIDE, 1, 1] }
 mesh = { order = [2, 2, 1], elements = [MASTER, MASTER, 1] }
 [contacts.c]
 slave = "upper.w0"
@@ -40,7 +40,7 @@ motions.top.translate = [0, 0, -0.1]
 """
 SOUND: dict[str, Any] = {
     "SOFT": 10, "POISSON": 0.3, "HARD": 10, "TOP": 2, "SLAVE": 2, "MASTER": 2, "METHOD": "monolithic", "PENALTY": 100,
-    "POINTS": 6, "SLIP": 0,
+    "POINTS": 6, "SLIP": 0, "WIDE": 1,
 }  # fmt: skip
 
 
