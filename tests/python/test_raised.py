@@ -131,3 +131,10 @@ def test_rings_and_poles_are_refused() -> None:
     points[BOWL.face_points("u0")] = points[0]
     with pytest.raises(InputError, match="with a pole"):
         check_raised(of_face(replace(BOWL, control_points=points), "w0", 3))
+
+
+@pytest.mark.parametrize("joint", ['["base.u1", "beside.u0"]', '["beside.u0", "base.u1"]'])
+def test_a_raised_body_is_not_glued_whichever_stands_first(joint: str) -> None:
+    with pytest.raises(InputError, match="joins 'base', whose order at w1") as refused:
+        Scene.from_toml(wrong("glued").replace('["base.u1", "beside.u0"]', joint)).problem()
+    assert refused.value.field == "glue.0"

@@ -96,3 +96,15 @@ def test_lines_along_the_bounds_of_elements_cross_none(elements: int) -> None:
 def test_lines_are_left_alone_at_the_bounds_of_an_element_by_shares_of_its_own_length(elements: int, share: float, more: int) -> None:
     line = (elements // 2 + share) / elements
     assert len(bounds(beside(0.0, 1.0, elements, line - 1.0, line + 1.0, 2, 1))) == elements + more
+
+
+def test_lines_are_counted_along_the_middle_of_cells() -> None:
+    """Where the master is as narrow as that they cross it as well; at the sides of the cells there is none of it."""
+    wide = beside(0.0, 1.0, 1, -0.35, 2.05, 8, 0)
+    narrow = replace(wide, bodies=tuple(replace(b, patch=squeezed(b.patch)) if b.name == "master" else b for b in wide.bodies))
+    assert [lines(problem) for problem in (wide, narrow, reverse(narrow, "slave"), reverse(narrow, "master"))] == [3, 3, 3, 3]
+
+
+def squeezed(patch: Patch) -> Patch:
+    """A tenth as wide along y."""
+    return replace(patch, control_points=patch.control_points * [1.0, 0.1, 1.0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import combinations
 from pathlib import Path
 
 import h5py
@@ -161,3 +162,26 @@ def test_a_rigid_body_that_its_force_lets_go_stays_where_nothing_acts_on_it_and_
     assert back.contacts[0].active == 0
     assert not np.any(back.contacts[0].force_master)
     assert again.reactions[1].displacement[2] == pytest.approx(pressed.reactions[1].displacement[2], rel=1e-3)
+
+
+BLOCK = """
+format = 1
+bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
+supports = { base.face = "block.w0", top = { face = "block.w1", force = { FORCE } } }
+stages = [{ name = "rest", steps = 1 }, { name = "go", steps = 1, motions.top.translate = WAY }]
+"""
+AXES = [axes for count in range(1, 4) for axes in combinations("xyz", count)]
+
+
+@pytest.mark.parametrize("pressed", AXES)
+def test_motions_are_refused_along_what_a_force_does_and_nothing_else_is_named(pressed: tuple[str, ...]) -> None:
+    for moved in AXES:
+        force = ", ".join(f"{axis} = -0.1" for axis in pressed)
+        text = BLOCK.replace("FORCE", force).replace("WAY", str([0.1 * (axis in moved) for axis in "xyz"]))
+        both = ", ".join(axis for axis in "xyz" if axis in moved and axis in pressed)
+        if not both:
+            assert Scene.from_toml(text).problem().supports[1].name == "top"
+            continue
+        with pytest.raises(InputError, match=f"moves support 'top' along {both}, where supports.top.force does") as refused:
+            Scene.from_toml(text).problem()
+        assert refused.value.field == "stages.go.motions.top.translate"

@@ -9,11 +9,13 @@ from isomortar.harness import Bound, case
 from isomortar.march.outlook import outlook
 from isomortar.scene import Scene
 
-#: A block of length one that goes along in several stages.
+#: A block of length one that goes along in several stages, beside one a thousand times as large, which would have digits left.
 SCENE = """
 format = 1
 bodies.block.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
 supports.base.face = "block.w0"
+bodies.large.geometry = { kind = "box", lower = [5, 0, 0], upper = [1005, 1000, 1000] }
+supports.large.face = "large.w0"
 """
 #: Far, but 1e-3 is still more than the last bit there; so it is at twice as far, and at three times no more.
 FAR = 3e12
