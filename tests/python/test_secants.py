@@ -11,6 +11,7 @@ from isomortar.march.simulation import Simulation
 from isomortar.model.constants import MAX_SECANTS
 from isomortar.model.entities import Problem
 from isomortar.scene import Scene
+from isomortar.solve import monolithic
 from isomortar.solve.bordered import Correction, from_lengths, in_lengths
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.record import StepResult
@@ -157,3 +158,12 @@ def test_the_step_by_a_tangent_is_learnt_where_supports_stood(monkeypatch: pytes
     assert "moved kept learn" not in said
     assert "tangent kept kept" not in said
     assert "held kept learn" not in said
+
+
+def test_other_factors_are_taught_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What steps by earlier ones told is of these."""
+    monkeypatch.setattr(monolithic, "solve_bordered", lambda *_: (None, None))
+    newton = SimpleNamespace(_equilibrium=None, _secants=(before := Secants()))
+    iterate = SimpleNamespace(balance=None, laws=None, targets=None)
+    monolithic._BorderedNewton._solved(newton, iterate, None, True)  # type: ignore[arg-type]
+    assert newton._secants is not before

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from isomortar.errors import FoldedElementError, IsomortarError, LostProjectionError
+from isomortar.model.constants import STEADY
+from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.method import FAILURES, Increment, Method
 from isomortar.solve.record import Observer, State
 
@@ -69,3 +71,21 @@ def test_mistakes_are_no_failures() -> None:
         Way(True).seek(LostProjectionError("without", 0), ValueError("with"))
     with pytest.raises(ValueError, match=r"^without$"):
         Way(True).seek(ValueError("without"), FoldedElementError("with", 0))
+
+
+@pytest.mark.parametrize("moduli", [(1.0, 1e6), (1e6, 1.0), (0.0, 5.0)])
+def test_each_loose_body_is_held_a_little_by_its_own_stiffness(moduli: tuple[float, float]) -> None:
+    """A rigid one, which has none, by that of the others; the tangent that is given stays as it is."""
+    points = {"one": np.arange(2), "two": np.arange(2, 5)}
+    stiffness = np.random.default_rng(1).uniform(0.1, 1.0, (5, 3, 3)) * np.repeat(moduli, [2, 3])[:, None, None]
+    given = stiffness.copy()
+    equilibrium = SimpleNamespace(
+        loose=[[SimpleNamespace(name=name)] for name in points],
+        solid=SimpleNamespace(diagonal=np.arange(5)),
+        numbering=SimpleNamespace(points=points),
+    )
+    added = Equilibrium._steadied(equilibrium, stiffness) - given  # type: ignore[arg-type]
+    assert np.array_equal(stiffness, given)
+    for own in points.values():
+        largest = given[own].max() or given.max()
+        np.testing.assert_allclose(added[own], np.tile(STEADY * largest * np.eye(3), (len(own), 1, 1)), rtol=1e-6)

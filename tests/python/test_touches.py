@@ -100,7 +100,7 @@ class Named(SimpleNamespace):
 def going(turns: bool) -> SimpleNamespace:
     """How a body goes."""
     rates = np.array([0.0, 0.0, 2.0])
-    return SimpleNamespace(turns=turns, turn=rates, shift=rates, bodies="body 'a'", through=lambda origin: "0, 0, 0")
+    return SimpleNamespace(turns=turns, turn=rates, shift=rates, bodies="body 'a'", through=lambda _: "0, 0, 0")
 
 
 @pytest.mark.parametrize("turns", [True, False])
