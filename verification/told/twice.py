@@ -30,8 +30,8 @@ OF_THE_WHOLE = {
     *("nothing moves", "all rigid", "idle stage", "loose", "setting of the first method", "setting of the other method"),
     *("half a ring", "other unit of moduli"),
 }
-#: Of scenes of two bodies, which take longer, those of what supports hold, and of what no contact or load reaches.
-OF_TWO_BODIES = {"held on one side", "held twice", "idle body", "not held against", "two planes", "plane and body"}
+#: Of scenes of two bodies, which take longer, those of what holds them twice, and of what nothing holds.
+OF_TWO_BODIES = {"held twice", "not held against"}
 
 
 def doubled(problem: Problem) -> Problem:
