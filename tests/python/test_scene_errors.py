@@ -35,6 +35,23 @@ def test_bad_scene(old: str, new: str, field: str, said: str) -> None:
     assert str(error.value).startswith(f"{field}: ")
 
 
+#: Keys of a scene whose values are truth values.
+TRUE_OR_FALSE = {"rigid"}
+
+
+@pytest.mark.parametrize("source", ["iron", "tire"])
+def test_a_truth_value_is_no_number_and_no_name(source: str) -> None:
+    """True is equal to 1, and was taken for it as the format."""
+    taken = []
+    for key, _ in settable_keys(source):
+        try:
+            Scene.load(source, {key: True})
+        except InputError:
+            continue
+        taken.append(key)
+    assert {key.rpartition(".")[2] for key in taken} == TRUE_OR_FALSE
+
+
 def test_what_stands_above_all_tables_is_every_table_and_list_of_a_scene() -> None:
     assert set(OF_THE_FILE) == SceneTable.model_fields.keys() - {"format", "name", "title"}
 

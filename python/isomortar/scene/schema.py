@@ -30,6 +30,7 @@ from isomortar.scene.types import (
     SceneName,
     Side,
     Table,
+    Version,
     entity,
 )
 
@@ -299,7 +300,7 @@ class RecordTable(Table):
 class SceneTable(Table):
     """A scene file of isomortar."""
 
-    format: Literal[1]
+    format: Version
     """Version of the file format."""
     name: SceneName | None = None
     """Short name, which results files have; default: the file's."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import fields
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, Strict, model_validator
 from pydantic_core import PydanticCustomError
@@ -64,6 +64,15 @@ def _spread(count: int) -> Callable[[Any], Any]:
     return spread
 
 
+def _no_equal(value: Any) -> Any:
+    """A value as it is: a truth value or a number with a point is equal to the one that is allowed, and none."""
+    if isinstance(value, bool | float):
+        raise PydanticCustomError("version", "is {value}; allowed: 1", {"value": repr(value).lower()})
+    return value
+
+
+#: Of the file's format, the only one there is.
+Version = Annotated[Literal[1], BeforeValidator(_no_equal, json_schema_input_type=Literal[1])]
 Grading = Annotated[Real, Field(ge=1e-3, le=1e3)]
 GaussPoints = Annotated[int, Strict(), Field(ge=1, le=64)]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
