@@ -12,7 +12,8 @@ from isomortar.march.outlook import outlook
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.record import Observer
-from isomortar.told.after.causes import BESIDE, causes
+from isomortar.told.after.causes import causes
+from isomortar.told.after.over_edges import BESIDE
 
 #: A block that begins beyond the edge x = 0 of its master by as much as START, and goes on.
 SCENE = """
@@ -125,20 +126,38 @@ STARTS = (
 OVER = re.compile(
     r"contact 'between': the slave goes over an edge of its master; (\d+) of its (\d+) quadrature points are beside the master"
 )
+ABOUT = re.compile(r"in this load step, by which (\d+) of its (\d+) quadrature points come to be beside the master")
+#: How Newton's method ends where nothing is said of what is behind it.
+STOPPED = "Newton's method stopped at 1"
+#: By the load time at the end of the increment that fails: how far the supports go in that load step.
+WAYS = {1.0: 0.0, 1.25: 0.1, 2.0: 0.1}
+
+
+def given_up_at(start: float, time: float) -> Simulation:
+    """The block that begins at a place, as it is when a load increment that ends at a load time is given up."""
+    simulation = Simulation(Scene.from_toml(SCENE.format(low=start, high=start + LENGTH, way=0.1)).problem())
+    simulation.equilibrium.time = time
+    return simulation
 
 
 @case(
     claim="Of a load step that is given up it is said that the slave goes over an edge where a part of an element, or all of the slave, is "
-    "beside its master, with the numbers of points that are; and nothing of it where that was said before.",
+    "beside its master, with the numbers of points that are; where none is, that it is about to, where the way of its supports in that "
+    "load step brings more points there, with the numbers of these; and nothing of it where that was said before.",
     tier="gate",
-    bounds={"wrong": Bound(0.0, 0.0, "definition: places of the block of which something else is said")},
+    bounds={"wrong": Bound(0.0, 0.0, "definition: places of the block, and load times, of which something else is said")},
 )
 def over_an_edge() -> dict[str, float]:
-    """How many of nine."""
-    wrong = 0
+    """How many of nine, at three load times each."""
+    wrong, points = 0, ELEMENTS * 3 * 2 * 2
     for start, over in STARTS:
-        simulation = Simulation(Scene.from_toml(SCENE.format(low=start, high=start + LENGTH, way=0.1)).problem())
-        said, again = ("\n".join(causes(simulation.equilibrium, simulation.state, ConvergenceError(why))) for why in ("", BESIDE))
-        told = [(int(beside), int(points)) for beside, points in OVER.findall(said)]
-        wrong += told != [(beyond(start), ELEMENTS * 3 * 2 * 2)] * over or "over an edge" in again
+        for time, way in WAYS.items():
+            simulation = given_up_at(start, time)
+            errors = [ConvergenceError(STOPPED + where) for where in ("", BESIDE)]
+            said, again = ("\n".join(causes(simulation.equilibrium, simulation.state, error)) for error in errors)
+            there, ahead = beyond(start), beyond(start + way)
+            told, about = ([(int(beside), int(of)) for beside, of in words.findall(said)] for words in (OVER, ABOUT))
+            wrong += told != [(there, points)] * over
+            wrong += about != [(ahead, points)] * (not over and ahead > there)
+            wrong += "over an edge" in again or "goes over it" in again
     return {"wrong": float(wrong)}

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from told.beside import STOPPED, given_up_at
 from told.circling import round_in_a_circle
 from told.other_ways import DUAL, pressed
 from told.shared import CORNERED
@@ -91,6 +92,7 @@ def of_causes() -> Iterator[tuple[str, str]]:
     yield "few iterations", "\n".join(said(scene(PENALTY="100\nmax_iterations = 2"), ConvergenceError("Newton's method stopped at 1")))
     yield "thin, bent", "\n".join(said(scene(TOP=1.0004), SingularSystemError("")))
     yield "shared edge", "\n".join(said(Simulation(Scene.from_toml(CORNERED).problem())))
+    yield "at an edge", "\n".join(said(given_up_at(-0.8, 2.0), ConvergenceError(STOPPED)))
     yield "on the way", "\n".join(said(lifted(0.1)))
     yield "on the way, balanced", "\n".join(said(begun(BALANCED)))
     yield "averages", error(DUAL).partition("iterations. ")[2]

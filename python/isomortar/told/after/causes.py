@@ -8,20 +8,18 @@ from itertools import combinations
 import numpy as np
 
 from isomortar.errors import PathError, SingularSystemError
-from isomortar.geometry.patch import FloatArray
 from isomortar.model import constants
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Contact, Problem
 from isomortar.model.ratios import times
 from isomortar.model.settings import SolverSettings
 from isomortar.model.sheet import Sheet
-from isomortar.solve.contact import PairMechanics
 from isomortar.solve.equilibrium import Equilibrium
-from isomortar.solve.feet import closest_depths
 from isomortar.solve.record import State
 from isomortar.told.after.averages_apart import averages_apart
 from isomortar.told.after.on_the_way import on_the_way
 from isomortar.told.after.other_ways import other_ways
+from isomortar.told.after.over_edges import BESIDE, at_an_edge, over_the_edge
 from isomortar.told.after.overcome import overcome
 from isomortar.told.after.shared_edges import shared_edges
 from isomortar.told.after.sliding import sliding
@@ -49,9 +47,6 @@ TOO_TIGHT = "which is next to round-off: "
 #: Elastic slips below this share of the slave make friction so stiff that Newton's method goes to and fro: a press failed at 2e-4.
 SHORT_SLIP = 1e-3
 
-#: How an error says that a slave goes over its master's edge.
-BESIDE = "beside the master"
-
 
 def causes(equilibrium: Equilibrium, state: State, error: Exception, longer: Sequence[str] = ()) -> Sequence[str]:
     """Sentences, without a capital, on what a person should look at; where there is nothing, on other ways.
@@ -68,6 +63,8 @@ def causes(equilibrium: Equilibrium, state: State, error: Exception, longer: Seq
     """
     found, words = list(_causes(equilibrium, state, error, longer)), str(error)
     bare = any(ended in words for ended in ENDED.values()) and ADVICE not in words.lower()
+    if not found and bare and BESIDE not in words:
+        found = [sentence for pair in equilibrium.pairs for sentence in at_an_edge(equilibrium, pair, state.positions)]
     return found if found or not bare else list(other_ways(equilibrium.problem, state, error))
 
 
@@ -100,7 +97,7 @@ def _causes(equilibrium: Equilibrium, state: State, error: Exception, longer: Se
         yield from _short_slip(problem, contact)
     if BESIDE not in str(error):
         for pair in equilibrium.pairs:
-            yield from _over_the_edge(problem, pair, positions)
+            yield from over_the_edge(equilibrium, pair, positions)
 
 
 def _path(error: float, cuts: int) -> str:
@@ -111,20 +108,6 @@ def _path(error: float, cuts: int) -> str:
         ways.append(f"take solver.path_tolerance = {np.ceil(error / unit) * unit:g} or more")
     ways += [f"let increments be halved more often than solver.max_cuts = {cuts}"] if cuts < constants.MOST_CUTS else []
     return f"balance and contact were met, and the shortest increment is too long for that: {', '.join([*ways, 'or take more load steps'])}"
-
-
-def _over_the_edge(problem: Problem, pair: PairMechanics, positions: FloatArray) -> Iterator[str]:
-    """A slave that goes over an edge of its master, in elements of which a part only has anything below."""
-    contact = pair.pair.contact
-    found = np.isfinite(closest_depths(problem, contact, positions)) if contact.averaged else pair.initial(positions).projected > 0
-    elements = found.reshape(pair.pair.slave.elements, -1)
-    partly = elements.any(axis=1) & ~elements.all(axis=1)
-    if partly.any() or not elements.any():
-        yield (
-            f"contact {contact.name!r}: the slave goes over an edge of its master; {np.count_nonzero(~elements)} of its "
-            f"{elements.size} quadrature points are {BESIDE} by then, and few bear what comes. Refine the slave, use a larger master, end "
-            "the motion earlier, or bring the slave onto its master from above"
-        )
 
 
 def _flat(bodies: Sequence[Body], jacobians: Sequence[float]) -> Iterator[str]:
