@@ -26,6 +26,7 @@ from told.held_inside import ON_EDGE as HELD_INSIDE
 from told.long_masters import CAP
 from told.mirrored import of_half
 from told.narrow import BALL, BALLS, STRIPS, depth, strip
+from told.other_faces import INTO_A_WALL
 from told.passing import SCENE as BENT
 from told.pivoting import FLAT as TURNED
 from told.unstable import LYING
@@ -207,6 +208,9 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     observer = Warned()
     list(Simulation(Scene.from_toml(FLOOR, overrides=[DOWN]).problem(), observer).run())
     yield "behind", observer.said[-1]
+    observer = Warned()
+    list(Simulation(Scene.from_toml(INTO_A_WALL).problem(), observer).run())
+    yield "in each other by other faces", next(said for said in observer.said if "is in body" in said)
     near = "stages.s.motions.top.translate=[0, 0.2, 0]"  # in one increment on all machines
     yield "turning coordinates", next(said for said in astray(TURNING, (near,))[0] if "degrees" in said)
     yield "stretching coordinates", next(said for said in astray(STRETCHING)[0] if "degrees" not in said)

@@ -46,7 +46,7 @@ def _are_at(heights: _Heights, size: float, way: FloatArray, between: Sequence[B
     through = np.zeros(len(points), dtype=np.bool_)
     for share in PLACES if len(points) and np.any(way) else ():
         for body in between:
-            above, _, beside = _above(points - share * way, body)
+            above, _, beside = heights_above(points - share * way, body)
             through |= (above < -NO_PART * size) & ~beside
     return not through.all()
 
@@ -73,11 +73,11 @@ def _heights(one: Body, other: Body, way: FloatArray) -> _Heights:
     centres, normals, _ = _outside(one)
     step = max(1, len(centres) // SOME)
     points, normals = centres[::step] + way, normals[::step]
-    above, out, beside = _above(points, other)
+    above, out, beside = heights_above(points, other)
     return _Heights(points, above, beside, np.einsum("ij,ij->i", normals, out) < FACING)
 
 
-def _above(points: FloatArray, body: Body) -> tuple[FloatArray, FloatArray, BoolArray]:
+def heights_above(points: FloatArray, body: Body) -> tuple[FloatArray, FloatArray, BoolArray]:
     """How high points are above a body, the normals of its nearest cells, and which points are beside these."""
     theirs, out, areas = _outside(body)
     found = nearest(points, theirs)

@@ -17,6 +17,7 @@ from isomortar.told.during.inside_out import InsideOut
 from isomortar.told.during.leaving import Leaving
 from isomortar.told.during.lost import LostDigits
 from isomortar.told.during.mirrored import Mirrored
+from isomortar.told.during.other_faces import OtherFaces
 from isomortar.told.during.passing import Passing
 from isomortar.told.during.pivoting import Pivoting
 from isomortar.told.during.pulling import Pulling
@@ -50,7 +51,7 @@ class Watches:
         self._coarse, self._advice = Coarse(equilibrium, states), StepAdvice(problem, step, states)
         self._pivoting, self._held_inside = Pivoting(equilibrium), HeldInside(equilibrium)
         self._leaving = Leaving([mechanics.pair for mechanics in equilibrium.pairs], states)
-        self._of_stages = [watch for watch in (Passing(problem), Behind(problem)) if watch.needed]
+        self._of_stages = [watch for watch in (Passing(problem), OtherFaces(problem), Behind(problem)) if watch.needed]
 
     def look(self, before: FloatArray, after: FloatArray, share: float) -> None:
         """Look at a load increment, a share of the longest one, from positions to others.
