@@ -52,7 +52,7 @@ supports.base.face = "lower.w0"
 MASTERS = {
     "plane": ("", "plane = { point = [0, 0, 0] }", "paper"),
     "closest": (_LOWER.format("N", 2, 2), 'master = "lower.w1"', "local"),
-    "averaged": (_LOWER.format("L", 1, 1), 'master = "lower.w1"', "paper"),
+    "averaged": (_LOWER.format("L", 1, 1), 'master = "lower.w1", projection = "averaged"', "local"),
 }
 _INTEGERS = (-1, 0, 1, 2, 7, 63, 65, 1000, 2**31 - 1, -(2**31), 2**40)
 _REALS = (0.0, -1.0, 1.0, 1e300, -1e300, 5e-324, float("nan"), float("inf"), float("-inf"))
