@@ -17,24 +17,31 @@ from isomortar.model.ratios import times
 from isomortar.model.rigid import deformation
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.told.before.meshes import SAID_ABOVE, stiff_sheet
+from isomortar.told.during.acting import lies
 from isomortar.told.during.locking import locking
 
 #: How much too stiff elements of order 2 are in bending, over (h / t)^2 times (h / R)^2 of bodies that are curved, and (h / l)^2 of smooth
 #: ones that are l long: fitted to half and quarter rings (0.10 to 0.18), and to beams and plates (0.02 to 0.28, by how they are held).
 CURVED, STRAIGHT = 0.15, 0.1
-#: As much, at the most, of order p above 2, over (h / t)^2 (h / R)^(2 p - 2): parts of rings of orders 3 and 4 were off by 0.0001 to 0.3
-#: times that, by how they are held. What it suspects is computed.
-HIGHER = 0.3
-#: Order up to which these are estimates, good enough to be told of bodies that are too large to be computed.
-ESTIMATED = 2
+#: As much, at the most, of order p, over (h / t)^2 times (h / R)^(2 p - 2) + (h / l)^(2 p - 2): parts of rings of orders 3 and 4 were off
+#: by 0.0001 to 0.3 times that, beams of orders 2 and 3 with both ends held by 0.02 to 0.42. What it suspects is computed.
+AT_MOST = 0.5
 #: Share by which a body is too stiff from which on it is told: estimates are good for the order of magnitude.
 TOLD = 0.25
-#: Share by which a body that stretches more than it bends is too stiff from which on it is told: it would bend, and stretches for it.
-STIFF = 1.0
+#: Share by which a body that stretches more than it bends is too stiff from which on it is told: it would bend, and stretches for it. So
+#: are such as are by so much along two directions at once, and so many times (`BOTH`) as along one: plates with all sides held were off by
+#: 140 and 170 times, and by 1.0 if one direction alone was mended; the width of beams adds a third.
+STIFF, BOTH = 1.0, 2.0
 #: Length over thickness from which on bodies bend rather than shear, about as beams do.
 SLENDER = 4.0
 #: A body bends where its middle has gone so many times as far across as its thickness has changed, both in the mean.
 BENDS = 2.0
+#: A body bends along lines that have gone so many times as far across, in the mean of those beside each other, as these differ: once in
+#: a plate that bends both ways alike, by symmetry, and nowhere in the mean in a strip that is twisted.
+ASIDE = 0.5
+#: Angle, in radians, by which lines turn from which on elements that are no splines have kinks where they meet: six degrees, of the 90 to
+#: 360 of arcs and rings, and round-off of straight bodies.
+TURNED = 0.1
 #: Share of a body's size below which its ways are round-off.
 STILL = 1e-9
 
@@ -48,7 +55,9 @@ class Way:
     along, across : int
         Numbers of the directions.
     share : float
-        By how much it is too stiff there (theory 9.20), of an order above 2 at the most.
+        By how much it is too stiff there, at the most (theory 9.20).
+    about : float
+        By how much about; zero of orders above 2, of which that is not known.
     thick : float
         How thick it is there, with all that is glued to it.
     """
@@ -56,6 +65,7 @@ class Way:
     along: int
     across: int
     share: float
+    about: float
     thick: float
 
 
@@ -77,21 +87,29 @@ class Bending:
         for body, found in self._stiff:
             if body.name in self._told:
                 continue
-            bent = self._bent(body, balance.positions, found)
+            bent = self._bent(body, balance, found)
             if bent is not None:
                 self._told.add(body.name)
                 yield self._sentence(body, bent, step)
 
-    def _bent(self, body: Body, positions: FloatArray, found: list[Way]) -> Way | None:
-        """How a body bends that is too stiff for it, if it does; what stretches instead may be so stiff that it cannot bend."""
-        way, bends_more = bends(body, self._equilibrium.numbering.of_patch(body.name, positions), found)
-        if way is None:
+    def _bent(self, body: Body, balance: Balance, found: list[Way]) -> Way | None:
+        """How a body bends, or would, that is too stiff for it: as computed, or estimated of one that bends and is too large for that."""
+        equilibrium, along = self._equilibrium, sorted({way.along for way in found})
+        way, bends_more = bends(body, equilibrium.numbering.of_patch(body.name, balance.positions), found)
+        if way is None or (not bends_more and (any(_kinked(body, axis) for axis in along) or lies(equilibrium, balance, body))):
             return None
-        computed = locking(self._equilibrium, positions, body, way.along)
-        if computed is None:
-            return way if bends_more and body.patch.directions[way.along].order <= ESTIMATED else None
-        share = computed.share if bends_more or (computed.at_ends and computed.share > STIFF) else 0.0
-        return replace(way, share=share) if share > TOLD else None
+        least = TOLD if bends_more else STIFF
+        together = locking(equilibrium, balance, body, along)
+        if together is not None and together <= least:
+            return None
+        shares = {axis: together if len(along) == 1 else locking(equilibrium, balance, body, [axis]) for axis in along}
+        if None in shares.values():
+            return replace(way, share=way.about) if bends_more and way.about > TOLD else None
+        worst = max(found, key=lambda one: shares[one.along] or 0.0)
+        share = shares[worst.along] or 0.0
+        if together is not None and together > max(STIFF, BOTH * share):
+            share = together
+        return replace(worst, share=share) if share > least else None
 
     def _sentence(self, body: Body, bent: Way, step: int) -> str:
         problem = self._equilibrium.problem
@@ -105,49 +123,61 @@ class Bending:
         )
 
 
+def _kinked(body: Body, along: int) -> bool:
+    """Whether a body is curved along elements that are no splines: where they meet it has kinks, at which a pressure bends it."""
+    direction = body.patch.directions[along]
+    return direction.family == "L" and direction.elements > 1 and _turn(body, along) > TURNED
+
+
 def ways(problem: Problem, body: Body) -> list[Way]:
-    """Ways in which a body is too stiff in bending, the worst first (theory 9.20); what is glued to it across bends with it."""
+    """Ways in which a body may be too stiff in bending, the worst first (theory 9.20); what is glued to it across bends with it."""
     lengths = element_lengths(body.patch)
     whole = [float(of.sum()) for of in lengths]
     thick = [length + _glued(problem, body, across) for across, length in enumerate(whole)]
     pairs = [(along, across) for along in range(3) for across in range(3) if whole[along] > SLENDER * thick[across] and along != across]
-    found = [Way(along, across, _share(body, along, lengths[along], thick[across]), thick[across]) for along, across in pairs]
+    found = [Way(along, across, *_shares(body, along, lengths[along], thick[across]), thick[across]) for along, across in pairs]
     return sorted((way for way in found if way.share > TOLD), key=lambda way: -way.share)
 
 
 def _glued(problem: Problem, body: Body, across: int) -> float:
-    """How thick all is that is glued to a body's two faces across a direction, and to these bodies in turn."""
+    """How thick all is that is glued to a body's two faces across a direction, and to these in turn; what is softer counts for less."""
     joints = dict([joint for one, other in problem.glue for joint in ((one, other), (other, one))])
     thick, seen = 0.0, {body.name}
     for end in (0, 1):
         face = joints.get(Face(body.name, f"{'uvw'[across]}{end}"))
         while face is not None and face.body not in seen:
             seen.add(face.body)
-            thick += float(element_lengths(problem.body(face.body).patch)["uvw".index(face.face[0])].sum())
+            other = problem.body(face.body)
+            thick += float(element_lengths(other.patch)["uvw".index(face.face[0])].sum()) * min(
+                1.0, other.material.young / body.material.young
+            )
             face = joints.get(Face(face.body, opposite(face.face)))
     return thick
 
 
-def _share(body: Body, along: int, lengths: FloatArray, thick: float) -> float:
-    """By how much elements of these lengths along a direction are too stiff where a body so thick bends (theory 9.20)."""
+def _shares(body: Body, along: int, lengths: FloatArray, thick: float) -> tuple[float, float]:
+    """By how much elements of these lengths along a direction are too stiff where a body so thick bends: at the most, and about (9.20)."""
     direction, whole = body.patch.directions[along], float(lengths.sum())
     if direction.order == 1:
-        return float(np.sum(lengths**3)) / whole / thick**2 / (2.0 * (1.0 + body.material.poisson))
+        share = float(np.sum(lengths**3)) / whole / thick**2 / (2.0 * (1.0 + body.material.poisson))
+        return share, share
+    power, curvature = 2 * direction.order, _turn(body, along) / whole
+    size = float(np.sum(lengths ** (power + 1))) / whole / thick**2
+    most = size * AT_MOST * (curvature ** (power - 2) + whole ** (2 - power))
+    if direction.order > 2:
+        return most, 0.0
+    return most, size * (CURVED * curvature**2 + (STRAIGHT / whole**2 if direction.family == "N" else 0.0))
+
+
+def _turn(body: Body, along: int) -> float:
+    """By how much the longest line of a body's control points along a direction turns, in radians."""
     lines = np.moveaxis(body.patch.control_points.reshape(*body.patch.shape, 3, order="F"), along, 0)
-    curvature, power = _curvature(lines.reshape(len(lines), -1, 3)), 2 * direction.order
-    bent = (CURVED if direction.order == 2 else HIGHER) * curvature ** (power - 2)
-    straight = STRAIGHT / whole**2 if direction.family == "N" and direction.order == 2 else 0.0
-    return float(np.sum(lengths ** (power + 1))) / whole / thick**2 * (bent + straight)
-
-
-def _curvature(lines: FloatArray) -> float:
-    """Mean curvature of the longest of some lines of control points, shape (points, lines, 3): how far it turns, over its length."""
-    steps = np.diff(lines, axis=0)
+    steps = np.diff(lines.reshape(len(lines), -1, 3), axis=0)
     lengths = np.linalg.norm(steps, axis=2)
     longest = int(np.argmax(lengths.sum(axis=0)))
     there = lengths[:, longest] > 0.0
     units = steps[there, longest] / lengths[there, longest, None]
-    return float(np.arccos(np.clip(np.sum(units[1:] * units[:-1], axis=1), -1.0, 1.0)).sum() / lengths[:, longest].sum())
+    return float(np.arccos(np.clip(np.sum(units[1:] * units[:-1], axis=1), -1.0, 1.0)).sum())
 
 
 def bends(body: Body, positions: FloatArray, ways: Sequence[Way]) -> tuple[Way | None, bool]:
@@ -176,7 +206,7 @@ def bends(body: Body, positions: FloatArray, ways: Sequence[Way]) -> tuple[Way |
         along, beside = (np.std(across.mean(axis=k)) for k in (1 - axis, axis))  # what is twisted has gone nowhere in the mean
         middles = [np.reshape(0.5 * (one + other), (*shape, 3)) for one, other in (reference, (low, high))]
         squeezed = np.sqrt(np.mean(np.sum((above - below) * normal, axis=1) ** 2))
-        if along > max(BENDS * squeezed, beside):
+        if along > max(BENDS * squeezed, ASIDE * beside):
             if _bent(across, axis, middles[0], max(way.thick, float(thick.mean()))) > _stretched(*middles):
                 return way, True
             stretched = stretched or way

@@ -7,102 +7,75 @@ from dataclasses import replace
 
 import numpy as np
 
-from isomortar._frozen import frozen
 from isomortar.errors import InputError, KernelError
-from isomortar.geometry.elevation import elevated
-from isomortar.geometry.patch import Direction, FloatArray, Patch
-from isomortar.geometry.refinement import homogeneous
-from isomortar.geometry.splines import Spline
+from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body, Problem
 from isomortar.model.glue import pieces, shared_directions
-from isomortar.solve.equilibrium import Equilibrium
+from isomortar.model.numbering import Numbering, same_points
+from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.timing import Ledger
+from isomortar.told.during.acting import acting
 from isomortar.told.during.giving_way import deformed_by
+from isomortar.told.during.raising import Finer, loads_on, raised_body, raised_forces
 
-#: Orders more along a body that are taken for what is true: rings of a single element of order 3, 120 times too stiff, were 44 times so at
-#: order 4 and 1.6 at order 5.
-RAISED = 3
-#: Share of all forces that acts between the ends of a body from which on it is not bent by these alone: of forces there the smallest ones
-#: that do the same work are only about what acts, and of pipes that widen as much as 65 times was found.
-BETWEEN = 0.1
+#: What is taken for true along a body, the first of these that it is not too large for: rings of a single element of order 3, 120 times too
+#: stiff, were 44 times so at order 4 and 1.6 at order 5, and one of order 2 that is held twice 4 times at order 5 if it was not halved.
+FINER = (Finer(3, True), Finer(3, False), Finer(2, False))
 #: Ways over a body's size by which its energy for small strains is found: the forces' round-off and what is not linear are both below a
 #: ten thousandth of it in bodies that bend, a hundredth of their length thick.
 SMALL = 1e-6
-#: Control points of bodies of the higher order up to which they are computed: a plate of 2100 took about a second and 0.3 GB, one of 20 500
-#: a minute and 4, which no run should take for a sentence.
-MOST = 2500
+#: Entries of the stiffness of what is finer, blocks of 3 x 3, up to which it is computed: that takes about half a second, and as long for
+#: each of two directions where it is told. Of a plate of 20 500 control points, 12 million, it took a minute and 4 GB.
+MOST = 400_000
 
 
-@frozen
-class Locking:
-    """How much too stiff a body is along a direction.
+def locking(equilibrium: Equilibrium, balance: Balance, body: Body, along: Sequence[int]) -> float | None:
+    """Share by which a body, with all that is glued to it, is too stiff along some directions for the forces that act (theory 9.23).
 
-    Attributes
-    ----------
-    share : float
-        By how much, for the forces that act.
-    at_ends : bool
-        Whether forces act at the ends alone.
-    """
-
-    share: float
-    at_ends: bool
-
-
-def locking(equilibrium: Equilibrium, positions: FloatArray, body: Body, along: int) -> Locking | None:
-    """By how much a body, with all that is glued to it, is too stiff along a direction for the forces that act (theory 9.23).
-
-    None where there is no telling: bodies that are too large for it, that are folded, or whose poles take forces of others.
+    None where there is no telling: bodies that are too large for it, that nothing deforms, that are folded, or that have poles.
 
     Parameters
     ----------
     equilibrium : Equilibrium
-    positions : ndarray, shape (control points, 3)
+    balance : Balance
+        Of it, with what acts on its bodies.
     body : Body
-    along : int
-        Number of the direction.
+    along : sequence of int
+        Numbers of the directions.
     """
-    problem, numbering, stage = equilibrium.problem, equilibrium.numbering, equilibrium.supports.stage
+    problem, stage = equilibrium.problem, equilibrium.supports.stage
     piece = next(piece for piece in pieces(problem) if body in piece)
-    shared = next(places for places in shared_directions(problem) if (body.name, "uvw"[along]) in places)
-    axes = {name: "uvw".index(letter) for name, letter in shared}
-    before, after, forces, raised_forces = list[Body](), list[Body](), list[FloatArray](), list[FloatArray]()
+    axes = _axes(problem, piece, body, along)
+    more = next((finer for finer in FINER if sum(finer.blocks(one, axes[one.name]) for one in piece) <= MOST), None)
+    if more is None:
+        return None
     try:
-        for one in (replace(one, closed=None, raised=None) for one in piece):
-            here = numbering.of_patch(one.name, positions)
-            alone = _of(problem, (one,), stage)
-            forces.append(alone.solid.forces_and_tangent(here - alone.origin)[0].copy())
-            before.append(replace(one, patch=replace(one.patch, control_points=here)))
-        as_it_is = _of(problem, tuple(before), stage)
-        acts = np.where(as_it_is.supports.held, 0.0, _together(as_it_is, before, forces))
-        for one, own in zip(before, forces, strict=True):
-            finer, on_finer = _finer(one, axes.get(one.name), own)
-            after.append(finer)
-            raised_forces.append(on_finer)
-        if sum(len(one.patch.weights) for one in after) > MOST:
-            return None
-        finest = _of(problem, tuple(after), stage)
-        went = _went(as_it_is, _along_them(before, axes), acts)
-        would = _went(finest, _along_them(after, axes), _together(finest, after, raised_forces))
+        forces = acting(equilibrium, balance, piece)
+        if forces[body.name].opposed(body.patch.shape, along):
+            return 0.0
+        before = [_free_of_strain(one, equilibrium.numbering, balance.positions) for one in piece]
+        went = _went(_of(problem, before, stage), axes, {name: own.whole for name, own in forces.items()})
+        finest = _of(problem, [raised_body(one, axes[one.name], more) for one in before], stage)
+        on_finest = {one.name: raised_forces(one, forces[one.name], axes[one.name], more) for one in before}
+        loads = loads_on(problem, [raised_body(one, axes[one.name], more) for one in piece], finest, equilibrium.time)
+        would = _went(finest, axes, on_finest, loads)
     except (InputError, KernelError):  # folded, or control points are one at a pole, and forces on them are others'
         return None
-    return Locking(would / went - 1.0, _at_ends(as_it_is, _along_them(before, axes), axes, acts)) if went > 0.0 else None
+    return would / went - 1.0 if went > 0.0 else None
 
 
-def _along_them(bodies: Sequence[Body], axes: Mapping[str, int]) -> list[Body]:
-    """Those of some bodies that have one of these directions."""
-    return [body for body in bodies if body.name in axes]
+def _axes(problem: Problem, piece: Sequence[Body], body: Body, along: Sequence[int]) -> dict[str, list[int]]:
+    """Directions of glued bodies that are one with some of a body's, by name."""
+    alike = [places for places in shared_directions(problem) if any((body.name, "uvw"[axis]) in places for axis in along)]
+    return {one.name: ["uvw".index(letter) for places in alike for name, letter in places if name == one.name] for one in piece}
 
 
-def _at_ends(of: Equilibrium, bodies: Sequence[Body], axes: Mapping[str, int], forces: FloatArray) -> bool:
-    """Whether forces act on bodies at the ends of these directions of theirs, and on hardly anything between."""
-    faces = [(one, f"{'uvw'[axes[one.name]]}{end}") for one in bodies for end in (0, 1)]
-    ends = np.unique(np.concatenate([of.numbering.face_points(*face) for face in faces]))
-    sizes = np.linalg.norm(forces, axis=1)
-    return bool(sizes.sum() - sizes[ends].sum() < BETWEEN * sizes.sum())
+def _free_of_strain(body: Body, numbering: Numbering, positions: FloatArray) -> Body:
+    """A body that is free of strain where its control points are, of one order."""
+    return replace(body, raised=None, patch=replace(body.patch, control_points=numbering.of_patch(body.name, positions)))
 
 
-def _of(problem: Problem, bodies: tuple[Body, ...], stage: int) -> Equilibrium:
+def _of(problem: Problem, bodies: Sequence[Body], stage: int) -> Equilibrium:
     """Bodies that are glued, or one alone, with what holds them still in a stage: what moves them exerts the forces that it does.
 
     Raises
@@ -110,28 +83,25 @@ def _of(problem: Problem, bodies: tuple[Body, ...], stage: int) -> Equilibrium:
     InputError
         One is folded, or some of its control points are one.
     """
+    if any(len(np.unique(same_points(body.patch, None))) < len(body.patch.weights) for body in bodies):
+        raise InputError("control points are one")
     names = {body.name for body in bodies}
-    glue = tuple(joint for joint in problem.glue if all(face.body in names for face in joint)) if len(bodies) > 1 else ()
+    glue = tuple(joint for joint in problem.glue if joint[0].body in names)
     still = [one for one in problem.supports if one.place.body in names and one.holds(stage) and not one.moves and not one.is_plate]
     supports = tuple(replace(one, stages=None) for one in still)
-    equilibrium = Equilibrium(replace(problem, bodies=bodies, contacts=(), glue=glue, supports=supports, loads=()), Ledger())
-    if any(len(np.unique(points)) < len(points) for points in equilibrium.numbering.points.values()):
-        raise InputError("control points are one")
-    return equilibrium
+    return Equilibrium(replace(problem, bodies=tuple(bodies), contacts=(), glue=glue, supports=supports, loads=()), Ledger())
 
 
-def _together(of: Equilibrium, bodies: Sequence[Body], forces: Sequence[FloatArray]) -> FloatArray:
-    """Forces on bodies' patches as those on all control points."""
-    total = np.zeros_like(of.numbering.reference)
-    for body, own in zip(bodies, forces, strict=True):
-        of.numbering.add_of_patch(body.name, own, total)
-    return total
-
-
-def _went(of: Equilibrium, bodies: Sequence[Body], forces: FloatArray) -> float:
-    """Work that forces on bodies free of strain put into some of them: what others give way is theirs."""
-    ways = deformed_by(forces, of, of.numbering.reference)
-    return sum(_energy(_of(of.problem, (body,), of.supports.stage), of.numbering.of_patch(body.name, ways)) for body in bodies)
+def _went(of: Equilibrium, axes: Mapping[str, Sequence[int]], forces: Mapping[str, FloatArray], loads: FloatArray | float = 0.0) -> float:
+    """Work that forces on bodies free of strain put into those that have one of some directions: what others give way is theirs."""
+    total, bodies = np.zeros_like(of.numbering.reference) + loads, of.problem.bodies
+    for name, own in forces.items():
+        of.numbering.add_of_patch(name, own, total)
+    ways = deformed_by(total, of, of.numbering.reference)
+    if all(axes[body.name] for body in bodies):
+        return float(np.sum(total * ways))
+    alone = [_of(of.problem, [body], of.supports.stage) for body in bodies if axes[body.name]]
+    return sum(_energy(one, of.numbering.of_patch(one.problem.bodies[0].name, ways)) for one in alone)
 
 
 def _energy(alone: Equilibrium, ways: FloatArray) -> float:
@@ -140,43 +110,3 @@ def _energy(alone: Equilibrium, ways: FloatArray) -> float:
     small = SMALL * float(np.ptp(rest)) / max(float(np.abs(ways).max()), np.finfo(np.float64).tiny)
     forces = alone.solid.forces_and_tangent(rest + small * ways)[0]
     return float(np.sum(forces * ways)) / small
-
-
-def _finer(body: Body, along: int | None, forces: FloatArray) -> tuple[Body, FloatArray]:
-    """A body of a higher order along a direction, if any, and its forces."""
-    if along is None:
-        return body, forces
-    matrix, patch = raised(body.patch, along)
-    points = tuple(count + RAISED * (axis == along) for axis, count in enumerate(body.quadrature))
-    return replace(body, patch=patch, quadrature=(points[0], points[1], points[2])), _on(matrix, body.patch, patch, along, forces)
-
-
-def raised(patch: Patch, along: int) -> tuple[FloatArray, Patch]:
-    """What control values along a direction become if its order is higher, and the patch of that order; smoothness stays as it is."""
-    direction = patch.directions[along]
-    matrix: FloatArray = np.eye(direction.count)
-    if direction.family == "L":
-        nodes = direction.greville
-        knots = np.repeat(direction.boundaries, direction.order)
-        direction = Direction("N", direction.order, np.concatenate([knots[:1], knots, knots[-1:]]))
-        matrix = np.asarray(np.linalg.inv(Spline([direction], matrix).evaluate(nodes[:, None])))
-    for _ in range(RAISED):
-        direction, matrix = elevated(direction, matrix, 0)
-    grid = _along(matrix, homogeneous(patch), along)
-    u, v, w = (direction if axis == along else own for axis, own in enumerate(patch.directions))
-    flat = grid.reshape(-1, 4, order="F")
-    return matrix, Patch((u, v, w), flat[:, :3] / flat[:, 3:], flat[:, 3])
-
-
-def _along(matrix: FloatArray, grid: FloatArray, along: int) -> FloatArray:
-    """A matrix times a grid of values along a direction."""
-    return np.moveaxis(np.tensordot(matrix, grid, (1, along)), 0, along)
-
-
-def _on(matrix: FloatArray, before: Patch, after: Patch, along: int, forces: FloatArray) -> FloatArray:
-    """Forces on a raised patch that do the same work as some on the patch before in all that this can do (theory 9.23)."""
-    grid = (forces / before.weights[:, None]).reshape((*before.shape, 3), order="F")
-    inverse = np.asarray(np.linalg.pinv(matrix).T)
-    for end in (0, -1):  # what acts on the faces there acts on no others
-        inverse[:, end] = np.eye(len(matrix))[:, end]
-    return np.asarray(_along(inverse, grid, along).reshape(-1, 3, order="F") * after.weights[:, None])
