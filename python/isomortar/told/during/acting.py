@@ -46,7 +46,7 @@ class Acting:
         return self.loads + self.contact + self.held
 
     def opposed(self, shape: tuple[int, int, int], along: Sequence[int]) -> bool:
-        """Whether contact holds a body, of so many control points, against all else in every section along some directions."""
+        """Whether contact holds a body, of so many control points, against all else in its sections along some directions (theory 9.24)."""
         across = tuple(axis for axis in range(3) if axis not in along)
         net, contact, others = (
             np.linalg.norm(forces.reshape((*shape, 3), order="F").sum(axis=across), axis=-1).sum()
