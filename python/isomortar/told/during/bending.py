@@ -156,7 +156,7 @@ def _glued(problem: Problem, body: Body, across: int) -> float:
 
 
 def _shares(body: Body, along: int, lengths: FloatArray, thick: float) -> tuple[float, float]:
-    """By how much elements of these lengths along a direction are too stiff where a body so thick bends: at most, and about (theory 9.20)."""
+    """How much too stiff elements of these lengths are along a direction where a body so thick bends: at most, and about (theory 9.20)."""
     direction, whole = body.patch.directions[along], float(lengths.sum())
     if direction.order == 1:
         share = float(np.sum(lengths**3)) / whole / thick**2 / (2.0 * (1.0 + body.material.poisson))
