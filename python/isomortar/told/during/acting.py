@@ -18,9 +18,6 @@ from isomortar.solve.timing import Ledger
 #: Share of the forces of contact, and of all others, that is left of both in a body's sections below which contact holds it all along: of
 #: beams on beds and pipes on shafts up to 0.2 was, of such as bend 0.45 and more.
 OPPOSED = 0.3
-#: Share of a face that contact presses on from which on it shapes the body: that was 0.75 to 1 of pipes round cores and of beams on beds,
-#: and 0.6 and less of what bends by lids and cylinders.
-LIES = 0.7
 
 
 @frozen
@@ -119,8 +116,8 @@ def _on_patch(numbering: Numbering, body: Body, forces: FloatArray) -> FloatArra
     return found
 
 
-def lies(equilibrium: Equilibrium, balance: Balance, body: Body) -> bool:
-    """Whether a contact presses on most of a face of a body, which it then shapes.
+def covered(equilibrium: Equilibrium, balance: Balance, body: Body) -> float:
+    """Share of the face of a body that contact presses on most, as of its reference area.
 
     Parameters
     ----------
@@ -128,11 +125,11 @@ def lies(equilibrium: Equilibrium, balance: Balance, body: Body) -> bool:
     balance : Balance
     body : Body
     """
+    shares = [0.0]
     for mechanics, kinematics, response in zip(equilibrium.pairs, balance.kinematics, balance.responses, strict=True):
         pair = mechanics.pair
         pressed = float(pair.slave.area[(pair.field(response.pressure) > 0.0) & (kinematics.projections.found > 0)].sum())
         for side in (pair.contact.slave, pair.contact.master):
-            faces = side.faces if isinstance(side, Face) and side.body == body.name else ()
-            if faces and pressed > LIES * sum(float(control_areas(body.patch, face.face).sum()) for face in faces):
-                return True
-    return False
+            if isinstance(side, Face) and side.body == body.name:
+                shares.append(pressed / sum(float(control_areas(body.patch, face.face).sum()) for face in side.faces))
+    return max(shares)
