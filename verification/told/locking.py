@@ -73,7 +73,7 @@ def told(made: Scene) -> float:
 @case(
     claim="Where elements lock so that a force is a fifth too large, that is told, with the order of by how much; where they "
     "do by less than two per cent, nothing is.",
-    tier="gate",
+    tier=lambda order: "gate" if order < 3 else "nightly",
     grid={"order": (1, 2, 3, 4)},
     bounds={
         "untold": Bound(0.0, 0.0, "definition: bodies a fifth too stiff of which nothing is said"),

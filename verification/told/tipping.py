@@ -68,7 +68,7 @@ def axis(sentence: str) -> tuple[str, float]:
 @case(
     claim="A high block stands while the middle of its loads is over its base, and is told to tip over that edge of it beyond; on all "
     "grounds, whatever pushes, to either side.",
-    tier="gate",
+    tier=lambda ground, method: "nightly" if (ground, method) == ("swapped", "uzawa") else "gate",
     grid={"ground": tuple(GROUNDS), "method": ("monolithic", "uzawa")},
     bounds={
         "restless": Bound(0.0, 0.0, "definition: blocks that do not stand though they should"),

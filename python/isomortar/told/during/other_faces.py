@@ -16,6 +16,9 @@ PASSED = 0.01
 #: Volume in the other body over that of a face in contact from which on a face is told: with one flank of a wedge in contact the other one
 #: had 2.3 to 23 times as much, its ends, where edges that are in contact come in by as much as their elements do not see, up to 0.05.
 MORE = 2.0
+#: Depth over the largest one from which on faces are as deep as each other, and the first is told: those that mirror each other differ by
+#: what Newton's method leaves.
+ALIKE = 1.0 - 1e-5
 #: Of the cells of a face, row by row, every so manyth one is looked at: 7 goes into none of their usual numbers, so that these are spread
 #: over the face, and some hundreds of them do for a volume.
 EVERY = 7
@@ -48,7 +51,8 @@ class OtherFaces:
                 continue
             one, other = (bodies[name] for name in names)
             depths = _depths(one, other, touching)
-            face = max(depths, key=depths.__getitem__, default="")
+            deepest = max(depths.values(), default=0.0)
+            face = next((face for face, depth in depths.items() if depth > ALIKE * deepest), "")
             if face:
                 self._told.add(names)
                 yield (
