@@ -73,7 +73,7 @@ def told(made: Scene) -> float:
 @case(
     claim="Where constraints at points make forces too small by a twentieth because a body comes through between them, that is told, with "
     "the order of by how much; where they do by less than a thousandth, nothing is.",
-    tier=lambda way: "nightly" if way == "demko" else "gate",
+    tier=lambda way: "gate" if way == "knots" else "nightly",
     grid={"way": ("knots", "greville", "demko")},
     bounds={
         "untold": Bound(0.0, 0.0, "definition: forces too small by a twentieth of which nothing is said"),
