@@ -42,7 +42,7 @@ wheel: $(READY) ## a wheel that needs nothing of the machine, in dist/, tried in
 
 # One process more than there are cores: where one waits, for the disk or for processes of its own, another one goes on.
 test: lint ## linters, then all tests
-	$(BIN)/python -m pytest -n $$(($$(nproc) + 1)) --dist loadfile
+	$(BIN)/python -m pytest -n $$(($$(env -u OMP_NUM_THREADS nproc) + 1)) --dist loadfile
 
 lint: $(READY) ## formatters and linters, nothing is changed
 	@bash tools/lint.sh

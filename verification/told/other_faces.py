@@ -30,6 +30,16 @@ contacts.far = { slave = "block.FACE", master = "wall.u0", friction = 0 }
 supports.top.face = "block.w1"
 stages = [{ name = "press", steps = 1, motions.top.translate = [WAY, 0, 0] }, { name = "rest", steps = 1 }]
 """
+#: A block near the edge of a large plate, whose elements are longer than that is away, both turned.
+BESIDE_AN_EDGE = """
+format = 1
+bodies.block = { geometry = { kind = "box", lower = [0.09, 9.5, 0.999], upper = [1.09, 10.5, 1.999] }, mesh = { order = 1, elements = 3 } }
+bodies.plate = { rigid = true, geometry = { kind = "box", lower = [0, 0, 0], upper = [20, 20, 1] }, mesh = { elements = [8, 8, 1] } }
+contacts.below = { slave = "block.w0", master = "plate.w1", friction = 0 }
+supports.base = { face = "plate.w0", axis = [0, 1, 0], centre = [0, 0, 0] }
+supports.top = { face = "block.w1", axis = [0, 1, 0], centre = [0, 0, 0] }
+stages = [{ name = "turn", steps = 2, motions.top.rotate = -8, motions.base.rotate = -8 }]
+"""
 TOLD = re.compile(
     r"body '(\w+)' is in body '(\w+)' at the end of stage '(\w+)', by (\S+), and nothing keeps its face (\S+) from it: their contact"
 )
@@ -43,6 +53,7 @@ SCENES = {
     "a side that goes into a wall": (INTO_A_WALL, [("block", "wall", "press", "block.u1")]),
     "a side that touches it": (WALL.replace("FACE", "u1").replace("WAY", "0.2"), []),
     "a side that does not reach it": (WALL.replace("FACE", "v0").replace("WAY", "0.05"), []),
+    "beside an edge": (BESIDE_AN_EDGE, []),
 }
 
 
@@ -53,7 +64,7 @@ SCENES = {
     bounds={"others": Bound(0.0, 0.0, "definition: scenes of which something else is said")},
 )
 def other_faces() -> dict[str, float]:
-    """How many of six."""
+    """How many of seven."""
     wrong = 0
     for text, expected in SCENES.values():
         heard = Heard()

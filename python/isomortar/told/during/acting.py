@@ -96,9 +96,10 @@ def _of_contacts(equilibrium: Equilibrium, balance: Balance) -> Iterator[tuple[s
         forces, contact = np.zeros_like(balance.positions), mechanics.pair.contact
         mechanics.add_forces(balance.positions, kinematics, response, forces)
         for side in (contact.slave, contact.master):
-            if isinstance(side, Face):
-                own = np.unique(np.concatenate([numbering.face_points(problem.body(face.body), face.face) for face in side.faces]))
-                yield side.body, -_taken(forces, own)
+            faces = side.faces if isinstance(side, Face) else ()
+            for body in dict.fromkeys(face.body for face in faces):
+                own = [numbering.face_points(problem.body(body), face.face) for face in faces if face.body == body]
+                yield body, -_taken(forces, np.unique(np.concatenate(own)))
 
 
 def _taken(forces: FloatArray, points: IntArray) -> FloatArray:
@@ -125,11 +126,12 @@ def covered(equilibrium: Equilibrium, balance: Balance, body: Body) -> float:
     balance : Balance
     body : Body
     """
-    shares = [0.0]
+    problem, shares = equilibrium.problem, [0.0]
     for mechanics, kinematics, response in zip(equilibrium.pairs, balance.kinematics, balance.responses, strict=True):
         pair = mechanics.pair
         pressed = float(pair.slave.area[(pair.field(response.pressure) > 0.0) & (kinematics.projections.found > 0)].sum())
         for side in (pair.contact.slave, pair.contact.master):
-            if isinstance(side, Face) and side.body == body.name:
-                shares.append(pressed / sum(float(control_areas(body.patch, face.face).sum()) for face in side.faces))
+            if isinstance(side, Face) and any(face.body == body.name for face in side.faces):
+                of_faces = [control_areas(problem.body(face.body).patch, face.face).sum() for face in side.faces]
+                shares.append(pressed / float(np.sum(of_faces)))
     return max(shares)

@@ -112,10 +112,11 @@ class Bending:
         if together is not None and together <= least:
             return None
         shares = {axis: together if len(along) == 1 else locking(equilibrium, balance, body, [axis]) for axis in along}
-        if None in shares.values():
+        known = {axis: share for axis, share in shares.items() if share is not None}
+        if not known:
             return replace(way, share=way.about) if bends_more and way.about > TOLD else None
-        worst = max(found, key=lambda one: shares[one.along] or 0.0)
-        share = shares[worst.along] or 0.0
+        worst = max((one for one in found if one.along in known), key=lambda one: known[one.along])
+        share = known[worst.along]
         if together is not None and together > max(STIFF, BOTH * share):
             share = together
         return replace(worst, share=share) if share > least else None

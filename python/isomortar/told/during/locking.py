@@ -54,11 +54,13 @@ def locking(equilibrium: Equilibrium, balance: Balance, body: Body, along: Seque
         if forces[body.name].opposed(body.patch.shape, along):
             return 0.0
         before = [_free_of_strain(one, equilibrium.numbering, balance.positions) for one in piece]
-        went = _went(_of(problem, before, stage), axes, {name: own.whole for name, own in forces.items()})
+        own = [one.name for one in piece if len(axes[one.name]) == len(along)]
+        went = _went(_of(problem, before, stage), own, {name: acts.whole for name, acts in forces.items()})
         finest = _of(problem, [raised_body(one, axes[one.name], more) for one in before], stage)
         on_finest = {one.name: raised_forces(one, forces[one.name], axes[one.name], more) for one in before}
-        loads = loads_on(problem, [raised_body(one, axes[one.name], more) for one in piece], finest, equilibrium.time)
-        would = _went(finest, axes, on_finest, loads)
+        given = () if body.raised else piece  # what acts on a body of two orders is one, loads and all
+        loads = loads_on(problem, [raised_body(one, axes[one.name], more) for one in given], finest, equilibrium.time) if given else 0.0
+        would = _went(finest, own, on_finest, loads)
     except (InputError, KernelError):  # folded, or control points are one at a pole, and forces on them are others'
         return None
     return would / went - 1.0 if went > 0.0 else None
@@ -86,21 +88,21 @@ def _of(problem: Problem, bodies: Sequence[Body], stage: int) -> Equilibrium:
     if any(len(np.unique(same_points(body.patch, None))) < len(body.patch.weights) for body in bodies):
         raise InputError("control points are one")
     names = {body.name for body in bodies}
-    glue = tuple(joint for joint in problem.glue if joint[0].body in names)
+    glue = tuple(joint for joint in problem.glue if all(face.body in names for face in joint))
     still = [one for one in problem.supports if one.place.body in names and one.holds(stage) and not one.moves and not one.is_plate]
     supports = tuple(replace(one, stages=None) for one in still)
     return Equilibrium(replace(problem, bodies=tuple(bodies), contacts=(), glue=glue, supports=supports, loads=()), Ledger())
 
 
-def _went(of: Equilibrium, axes: Mapping[str, Sequence[int]], forces: Mapping[str, FloatArray], loads: FloatArray | float = 0.0) -> float:
-    """Work that forces on bodies free of strain put into those that have one of some directions: what others give way is theirs."""
+def _went(of: Equilibrium, own: Sequence[str], forces: Mapping[str, FloatArray], loads: FloatArray | float = 0.0) -> float:
+    """Work that forces on bodies free of strain put into some of them, which have all of the directions: what others give way is theirs."""
     total, bodies = np.zeros_like(of.numbering.reference) + loads, of.problem.bodies
-    for name, own in forces.items():
-        of.numbering.add_of_patch(name, own, total)
+    for name, on_patch in forces.items():
+        of.numbering.add_of_patch(name, on_patch, total)
     ways = deformed_by(total, of, of.numbering.reference)
-    if all(axes[body.name] for body in bodies):
+    if len(own) == len(bodies):
         return float(np.sum(total * ways))
-    alone = [_of(of.problem, [body], of.supports.stage) for body in bodies if axes[body.name]]
+    alone = [_of(of.problem, [body], of.supports.stage) for body in bodies if body.name in own]
     return sum(_energy(one, of.numbering.of_patch(one.problem.bodies[0].name, ways)) for one in alone)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from isomortar.geometry.faces import cells
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body, Face, Problem
+from isomortar.model.stance import nearest
 from isomortar.told.before.meeting import heights_above
 
 #: Depth over the size of the smaller body from which a face is in another one: cells are flat, and faces between them are not.
@@ -84,8 +85,28 @@ def _within(one: Body, face: str, touching: set[str], other: Body, least: float)
 def _inside(one: Body, faces: Sequence[str], other: Body) -> dict[str, tuple[float, float]]:
     """How deep middles of cells of some faces are in another body at most, and volumes between the faces and what they came through."""
     seen = [cells(one.patch, face) for face in faces]
-    heights, _, beside = heights_above(np.concatenate([side.centres[::EVERY] for side in seen]), other)
+    points = np.concatenate([side.centres[::EVERY] for side in seen])
+    heights, _, beside = heights_above(points, other)
     depths: FloatArray = np.where(beside, 0.0, np.maximum(-heights, 0.0))
+    inside = np.flatnonzero(depths > 0.0)
+    if len(inside):
+        depths[inside] = np.minimum(depths[inside], _below_all(points[inside], other))
     areas = [side.areas[::EVERY] for side in seen]
     of_faces = np.split(depths, np.cumsum([len(own) for own in areas])[:-1])
     return {face: (float(own.max()), float(own @ area)) for face, own, area in zip(faces, of_faces, areas, strict=True)}
+
+
+def _below_all(points: FloatArray, body: Body) -> FloatArray:
+    """How deep points are below those faces of a body that are no farther than a cell more than the nearest one; 0 above one of them.
+
+    Beside an edge the nearest middle of a cell may be of the face round the corner, and what is above one face is below the other one.
+    """
+    above, away, reach = [], [], []
+    for side in (cells(body.patch, face) for face in body.outer):
+        found = nearest(points, side.centres)
+        arms = points - side.centres[found]
+        above.append(np.einsum("ij,ij->i", arms, side.normals[found]))
+        away.append(np.linalg.norm(arms, axis=1))
+        reach.append(np.sqrt(side.areas[found]))
+    near = np.array(away) <= np.min(away, axis=0) + np.array(reach)
+    return np.maximum(-np.max(np.where(near, above, -np.inf), axis=0), 0.0)
