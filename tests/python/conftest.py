@@ -52,3 +52,9 @@ def invoke(tmp_path, monkeypatch, capsys):
         return int(ended.value.code or 0), printed.out, printed.err
 
     return invoke
+
+
+@pytest.fixture(autouse=True)
+def every_step_is_written(monkeypatch):
+    """Load steps are on the disk when they are recorded, however long a busy machine takes to write them."""
+    monkeypatch.setattr("isomortar.results.writer.BRIEF", float("inf"))

@@ -224,6 +224,7 @@ def test_steps_are_written_together_where_writing_takes_long_and_kept_if_the_run
 ) -> None:
     path, clock = tmp_path / "run.h5", iter(range(10**6))
     if slow:  # each look at the clock takes a second, and writing so a second, which no ten of go by
+        monkeypatch.setattr(writer, "BRIEF", 0.05)
         monkeypatch.setattr(writer, "monotonic", lambda: float(next(clock)))
     observer = _Stopping(path, 5)
     with pytest.raises(KeyboardInterrupt):
