@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from isomortar.geometry.nearest import nearest
 from isomortar.harness import Bound, case
-from isomortar.model.stance import nearest
 
 
 @case(

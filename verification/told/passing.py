@@ -27,8 +27,9 @@ SCENES = {
     "into it": ("0", (), _ONCE),
     "other first": ("0", ("swap",), [("block", "beam", "bend")]),
     "far below": ("-0.9", (), []),
-    "by a fiftieth of the smaller": ("-0.35", (), _ONCE),
-    "by less than a hundredth of it": ("-0.363", (), []),
+    "by a twentieth of the thinner one": ("-0.35", (), _ONCE),
+    "by a fiftieth of the thinner one": ("-0.365", (), _ONCE),
+    "by less than a hundredth of it": ("-0.371", (), []),
     "in contact": ("0", ('contacts={c={slave="beam.w0",master="block.w1"}}',), []),
     "the other way": ("0", ("loads.weight.pressure=-0.001",), []),
     "in the second stage": ("0", ("stages.bend.loads={weight=0}", "stages.hold.loads={weight=1}"), [("beam", "block", "hold")]),
@@ -72,6 +73,6 @@ def told(level: str, changes: tuple[str, ...]) -> list[tuple[str, str, str]]:
     },
 )
 def passing() -> dict[str, float]:
-    """How many of eleven, and in a stage of several load steps."""
+    """How many of thirteen, and in a stage of several load steps."""
     others = [name for name, (level, changes, said) in SCENES.items() if told(level, changes) != said]
     return {"others": float(len(others)), "early": before_the_end()}

@@ -8,7 +8,8 @@ import numpy as np
 
 from isomortar._frozen import frozen
 from isomortar.geometry.faces import Cells, cells
-from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.geometry.nearest import nearest, product
+from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Contact, Face, Problem, RigidPlane, unit
 from isomortar.model.remembered import remembered
 from isomortar.model.sheet import Sheet
@@ -17,8 +18,6 @@ from isomortar.model.sheet import Sheet
 FACING = -0.1
 #: Normals of a face that are compared each with each.
 SOME = 400
-#: Distances that are looked at in one go, which stay in the processor's cache.
-AT_ONCE = 250_000
 
 
 @frozen
@@ -106,27 +105,13 @@ def _by_cells(slave: Cells, master: Cells) -> tuple[Stance, bool]:
     thickness = np.minimum(slave.thickness, master.thickness[found])
     over = ~beside & ~master.beyond(found, arms)
     depth, thick = _deepest(cosines, np.where(over, heights, np.inf), thickness)
-    cosine = float(_product(_some(slave.normals), _some(master.normals).T).min())
+    cosine = float(product(_some(slave.normals), _some(master.normals).T).min())
     apart = np.where(beside, distances - np.sqrt(2.0 * master.areas[found]), heights)
     closest = int(np.argmin(np.where(cosines < FACING, apart, np.inf)))
     gap = 0.0 if depth > 0.0 else max(float(apart.min()), 0.0)
     faces = bool(np.any(~beside & (cosines < FACING) & ~master.outermost((False, False))[found]))
     areas = float(slave.areas.sum()), float(master.areas.sum())
     return Stance(*areas, cosine, depth, gap, thick, False, -normals[closest], faces), not over.any()
-
-
-def nearest(points: FloatArray, others: FloatArray) -> IntArray:
-    """Numbers of the others that are nearest to each point, by all distances: SciPy's tree takes a tenth of a second to load."""
-    middle = others.mean(axis=0)
-    points, others = points - middle, others - middle  # far from the origin squares would have lost their differences
-    squares = np.column_stack([-2.0 * others, np.einsum("ij,ij->i", others, others)]).T.copy()  # |x - y|^2 but for |x|^2
-    parts = np.array_split(np.column_stack([points, np.ones(len(points))]), -(-len(points) * len(others) // AT_ONCE))
-    return np.concatenate([np.argmin(_product(part, squares), axis=1) for part in parts])
-
-
-def _product(some: FloatArray, others: FloatArray) -> FloatArray:
-    """Product of two matrices without threads of NumPy's, which would stay awake for half a second afterwards."""
-    return np.asarray(np.einsum("ik,kj->ij", some, others))
 
 
 def _some(normals: FloatArray) -> FloatArray:

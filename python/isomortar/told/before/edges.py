@@ -7,10 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from isomortar.geometry.faces import cells, edges
+from isomortar.geometry.nearest import nearest
 from isomortar.geometry.patch import IntArray
 from isomortar.model.entities import Contact, Face, Problem
 from isomortar.model.sheet import Sheet
-from isomortar.model.stance import nearest
 
 #: Edges bear where they are nearer to the other side than the two are anywhere and this share of its size: there faces lie on each other.
 NEAR = 0.01

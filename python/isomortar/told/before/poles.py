@@ -7,11 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from isomortar.geometry.faces import cells
+from isomortar.geometry.nearest import nearest
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.contact_checks import poles
 from isomortar.model.entities import Contact, Face, Problem
 from isomortar.model.sheet import Sheet
-from isomortar.model.stance import nearest
 
 
 def doubts_at_poles(problem: Problem, contact: Contact, travel: float) -> Iterator[str]:

@@ -6,14 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from isomortar.geometry.faces import cells
+from isomortar.geometry.faces import Cells
+from isomortar.geometry.outside import heights_above
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body, Face, Problem
-from isomortar.model.stance import nearest
-from isomortar.told.before.meeting import heights_above
+from isomortar.told.before.meeting import in_box, least_depth
 
-#: Depth over the size of the smaller body from which a face is in another one: cells are flat, and faces between them are not.
-PASSED = 0.01
 #: Volume in the other body over that of a face in contact from which on a face is told: with one flank of a wedge in contact the other one
 #: had 2.3 to 23 times as much, its ends, where edges that are in contact come in by as much as their elements do not see, up to 0.05.
 MORE = 2.0
@@ -65,48 +63,25 @@ class OtherFaces:
 
 def _depths(one: Body, other: Body, touching: set[str]) -> Mapping[str, float]:
     """How deep faces of a body without contact are in another one, of those that are in it by more than others in contact are."""
-    least = PASSED * min(one.size, other.size)
-    free = [face for face in one.outer if face not in touching and _within(one, face, touching, other, least)]
-    if not free:
+    least = least_depth(one, other)
+    found = {face: float(_depths_of(side, other, least)[0].max(initial=0.0)) for face, side in one.outside.items() if face not in touching}
+    deep = {face: depth for face, depth in found.items() if depth > least}
+    if not deep:
         return {}
-    found = _inside(one, [*touching, *free], other)
-    held = max(found[face][1] for face in touching)
-    return {face: found[face][0] for face in free if found[face][0] > least and found[face][1] > MORE * held}
+    held = max(_volume(one.outside[face], other) for face in touching)
+    return {face: depth for face, depth in deep.items() if _volume(one.outside[face], other) > MORE * held}
 
 
-def _within(one: Body, face: str, touching: set[str], other: Body, least: float) -> bool:
-    """Whether control points of a face, but for those at the edges of faces in contact, are in the box around another body."""
-    patch = one.patch
-    own = np.setdiff1d(patch.face_points(face), np.concatenate([patch.face_points(of).ravel() for of in touching]))
-    points, theirs = patch.control_points[own], other.patch.control_points
-    return bool(np.any(np.all((points > theirs.min(axis=0) + least) & (points < theirs.max(axis=0) - least), axis=1)))
+def _volume(side: Cells, other: Body) -> float:
+    """Volume between a face in another body and what it came through."""
+    depths, areas = _depths_of(side, other, 0.0)
+    return float(depths @ areas)
 
 
-def _inside(one: Body, faces: Sequence[str], other: Body) -> dict[str, tuple[float, float]]:
-    """How deep middles of cells of some faces are in another body at most, and volumes between the faces and what they came through."""
-    seen = [cells(one.patch, face) for face in faces]
-    points = np.concatenate([side.centres[::EVERY] for side in seen])
-    heights, _, beside = heights_above(points, other)
-    depths: FloatArray = np.where(beside, 0.0, np.maximum(-heights, 0.0))
-    inside = np.flatnonzero(depths > 0.0)
-    if len(inside):
-        depths[inside] = np.minimum(depths[inside], _below_all(points[inside], other))
-    areas = [side.areas[::EVERY] for side in seen]
-    of_faces = np.split(depths, np.cumsum([len(own) for own in areas])[:-1])
-    return {face: (float(own.max()), float(own @ area)) for face, own, area in zip(faces, of_faces, areas, strict=True)}
-
-
-def _below_all(points: FloatArray, body: Body) -> FloatArray:
-    """How deep points are below those faces of a body that are no farther than a cell more than the nearest one; 0 above one of them.
-
-    Beside an edge the nearest middle of a cell may be of the face round the corner, and what is above one face is below the other one.
-    """
-    above, away, reach = [], [], []
-    for side in (cells(body.patch, face) for face in body.outer):
-        found = nearest(points, side.centres)
-        arms = points - side.centres[found]
-        above.append(np.einsum("ij,ij->i", arms, side.normals[found]))
-        away.append(np.linalg.norm(arms, axis=1))
-        reach.append(np.sqrt(side.areas[found]))
-    near = np.array(away) <= np.min(away, axis=0) + np.array(reach)
-    return np.maximum(-np.max(np.where(near, above, -np.inf), axis=0), 0.0)
+def _depths_of(side: Cells, other: Body, least: float) -> tuple[FloatArray, FloatArray]:
+    """How deep middles of some cells are in another body, and their areas, but for such as are there by less than the least."""
+    middles, areas = side.centres[::EVERY], side.areas[::EVERY]
+    near = in_box(middles, other, -least)
+    if not len(near):
+        return np.zeros(0), np.zeros(0)
+    return np.maximum(-heights_above(middles[near], other.outside.values())[0], 0.0), areas[near]

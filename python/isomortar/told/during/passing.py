@@ -7,10 +7,7 @@ from functools import cached_property
 
 from isomortar.model.entities import Body, Problem
 from isomortar.told.before.left_out import unrelated, without_contact
-from isomortar.told.before.meeting import depth
-
-#: Depth over the size of the smaller body from which bodies are in each other: cells are flat, and faces between them are not.
-PASSED = 0.01
+from isomortar.told.before.meeting import depth, least_depth
 
 
 class Passing:
@@ -39,8 +36,8 @@ class Passing:
             if names in self._told:
                 continue
             one, other = (bodies[name] for name in names)
-            inside = depth(one, other)
-            if inside > PASSED * min(one.size, other.size) and names not in self._known:
+            inside = depth(one, other, least_depth(one, other))
+            if inside > 0.0 and names not in self._known:
                 self._told.add(names)
                 yield (
                     f"bodies {one.name!r} and {other.name!r} are in each other at the end of stage {stage!r}, by {inside:.3g}, and no "

@@ -1,0 +1,98 @@
+"""How high points are above a body, below zero within it: by the nearest places on cells of its faces."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import numpy as np
+
+from isomortar.geometry.faces import Cells
+from isomortar.geometry.nearest import nearest
+from isomortar.geometry.patch import FloatArray, IntArray
+
+#: Share of a square of a distance by which a cell that a point is straight above is nearer than one that it is beside of, as far away: at
+#: edges the latter does not tell on which side of it the point is. A tenth of a per cent of the distance, more than cells leave open.
+STRAIGHT = 2e-3
+#: A face of less than this share of the largest one's area is a line or a point: the axis of a cylinder, a pole of a ball.
+NO_AREA = 1e-9
+#: Share of a cell's sides from its middle to its edges: what is farther is nearer to the next one, or beside the face, if there is none.
+HALF = 0.5
+
+
+def heights_above(points: FloatArray, sides: Collection[Cells]) -> tuple[FloatArray, FloatArray]:
+    """How high points are above all of some faces, that enclose a body, and the outward normals of the cells that are nearest.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+    sides : collection of Cells
+        Of the faces.
+
+    Returns
+    -------
+    heights : ndarray, shape (n,)
+        Distances from the nearest places; those within the body are negative.
+    normals : ndarray, shape (n, 3)
+    """
+    least = NO_AREA * np.max([side.areas.sum() for side in sides])
+    bounding = [side for side in sides if side.areas.sum() > least]  # the others are lines and points within the body
+    bounds = np.stack([_bounds(points, side) for side in bounding])
+    order, scores = np.argsort(bounds, axis=0), np.full(len(points), np.inf)
+    arms, normals = np.zeros((len(points), 3)), np.zeros((len(points), 3))
+    for rank in order:  # the likeliest face first: most of the others are farther than the place that is found there
+        for number, side in enumerate(bounding):
+            those = np.flatnonzero((rank == number) & (bounds[number] ** 2 <= scores * (1.0 + STRAIGHT)))
+            if len(those):
+                further, out = _from(points[those], side)
+                found = _scores(further, out)
+                nearer = found < scores[those]
+                those = those[nearer]
+                scores[those], arms[those], normals[those] = found[nearer], further[nearer], out[nearer]
+    return np.copysign(np.linalg.norm(arms, axis=1), np.einsum("ij,ij->i", arms, normals)), normals
+
+
+def _bounds(points: FloatArray, side: Cells) -> FloatArray:
+    """Distances of points from the box round a face, which no place of it is nearer than."""
+    reach = np.abs(side.sides).sum(axis=1) * HALF
+    low, high = (side.centres - reach).min(axis=0), (side.centres + reach).max(axis=0)
+    return np.asarray(np.linalg.norm(np.maximum(np.maximum(low - points, points - high), 0.0), axis=1))
+
+
+def _from(points: FloatArray, side: Cells) -> tuple[FloatArray, FloatArray]:
+    """Ways to points from the nearest places of a face, and its normals there; by steps from the nearest middle of a cell."""
+    at = nearest(points, side.centres)
+    arms, steps = _reached(points, side, at)
+    moving = np.flatnonzero(steps.any(axis=0))
+    while len(moving):
+        there = np.clip(np.stack(np.unravel_index(at[moving], side.shape)) + steps[:, moving], 0, np.array(side.shape)[:, None] - 1)
+        tried = np.ravel_multi_index(tuple(there), side.shape)
+        further, onwards = _reached(points[moving], side, tried)
+        nearer = _scores(further, side.normals[tried]) < _scores(arms[moving], side.normals[at[moving]])
+        moving = moving[nearer]
+        at[moving], arms[moving], steps[:, moving] = tried[nearer], further[nearer], onwards[:, nearer]
+        moving = moving[steps[:, moving].any(axis=0)]
+    return arms, side.normals[at]
+
+
+def _reached(points: FloatArray, side: Cells, numbers: IntArray) -> tuple[FloatArray, IntArray]:
+    """Ways to points from the nearest places of cells, shape (n, 3), and how many cells on they are beyond these, shape (2, n)."""
+    first, second = side.sides[numbers, 0], side.sides[numbers, 1]
+    arms = points - side.centres[numbers]
+    along = side.ways(numbers, arms)[0]
+    inside = np.clip(along, -HALF, HALF)
+    aside = _share(arms - inside[:, None] * first, second)
+    within = np.clip(aside, -HALF, HALF)
+    inside = np.clip(_share(arms - within[:, None] * second, first), -HALF, HALF)
+    arms = arms - inside[:, None] * first - within[:, None] * second
+    return arms, np.rint(np.stack([along, aside])).astype(np.int64)
+
+
+def _share(arms: FloatArray, of: FloatArray) -> FloatArray:
+    squares = np.einsum("ij,ij->i", of, of)
+    return np.divide(np.einsum("ij,ij->i", arms, of), squares, out=np.zeros(len(arms)), where=squares > 0.0)
+
+
+def _scores(arms: FloatArray, normals: FloatArray) -> FloatArray:
+    """Squares of distances, less a share of those straight above."""
+    above = np.einsum("...j,...j->...", arms, normals)
+    return np.asarray(np.einsum("...j,...j->...", arms, arms) - STRAIGHT * above * above)
