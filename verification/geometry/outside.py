@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from geometry.bodies import BODIES, Built
 
@@ -52,6 +54,31 @@ def beside_boxes(sides: str) -> dict[str, float]:
     return {
         "off": float(np.abs(np.abs(found) - np.abs(exact)).max() / lengths.max()),
         "sides": float(np.count_nonzero((found < 0.0)[clear] != (exact < 0.0)[clear])),
+    }
+
+
+#: Sides of a plate that leans so far that cells of its edges are long and slanting, as rows.
+LEANING = np.array([[4.0, 0.0, 0.0], [2.0, 3.0, 0.0], [1.5, -1.0, 0.05]])
+
+
+@case(
+    claim="Points in a plate that leans, and round it, are on the side that planes tell, and those in it as deep as the nearest plane.",
+    tier="gate",
+    bounds={
+        "off": Bound(at_most=1e-13, reason="round-off: of the plate's length"),
+        "sides": Bound(0.0, 0.0, "definition: points that are told to be on the other side"),
+    },
+)
+def leaning() -> dict[str, float]:
+    """Largest error of a depth over the length, and points on the wrong side."""
+    cube = box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    shares = np.random.default_rng(7).random((4 * SOME, 3)) * 1.6 - 0.3
+    found = heights(replace(cube, control_points=cube.control_points @ LEANING), "", shares @ LEANING)
+    apart = np.abs(np.linalg.det(LEANING)) / np.linalg.norm(np.cross(LEANING[[1, 2, 0]], LEANING[[2, 0, 1]]), axis=1)
+    deep = np.min(np.minimum(shares, 1.0 - shares) * apart, axis=1)
+    return {
+        "off": float(np.abs(found + deep)[deep > 0.0].max() / np.ptp(LEANING)),
+        "sides": float(np.count_nonzero((found < 0.0) != (deep > 0.0))),
     }
 
 

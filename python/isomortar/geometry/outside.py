@@ -68,23 +68,29 @@ def _from(points: FloatArray, side: Cells) -> tuple[FloatArray, FloatArray]:
         tried = np.ravel_multi_index(tuple(there), side.shape)
         further, onwards = _reached(points[moving], side, tried)
         nearer = _scores(further, side.normals[tried]) < _scores(arms[moving], side.normals[at[moving]])
-        moving = moving[nearer]
-        at[moving], arms[moving], steps[:, moving] = tried[nearer], further[nearer], onwards[:, nearer]
+        those = moving[nearer]
+        at[those], arms[those], steps[:, those] = tried[nearer], further[nearer], onwards[:, nearer]
+        steps[:, moving[~nearer]] = np.fix(0.5 * steps[:, moving[~nearer]])
         moving = moving[steps[:, moving].any(axis=0)]
     return arms, side.normals[at]
 
 
 def _reached(points: FloatArray, side: Cells, numbers: IntArray) -> tuple[FloatArray, IntArray]:
     """Ways to points from the nearest places of cells, shape (n, 3), and how many cells on they are beyond these, shape (2, n)."""
-    first, second = side.sides[numbers, 0], side.sides[numbers, 1]
-    arms = points - side.centres[numbers]
-    along = side.ways(numbers, arms)[0]
-    inside = np.clip(along, -HALF, HALF)
-    aside = _share(arms - inside[:, None] * first, second)
-    within = np.clip(aside, -HALF, HALF)
-    inside = np.clip(_share(arms - within[:, None] * second, first), -HALF, HALF)
-    arms = arms - inside[:, None] * first - within[:, None] * second
-    return arms, np.rint(np.stack([along, aside])).astype(np.int64)
+    arms, ways = points - side.centres[numbers], side.ways(numbers, points - side.centres[numbers])
+    cell = side.sides[numbers]
+    places = np.zeros((5, 2, len(numbers)))
+    places[0] = ways  # straight above, or else on one of the edges
+    for edge, (axis, end) in enumerate([(0, -HALF), (0, HALF), (1, -HALF), (1, HALF)], start=1):
+        places[edge, axis] = end
+        places[edge, 1 - axis] = _share(arms - end * cell[:, axis], cell[:, 1 - axis])
+    there = np.clip(places, -HALF, HALF)
+    further = arms - np.einsum("ean,nai->eni", there, cell)
+    squares = np.einsum("eni,eni->en", further, further)
+    squares[0, np.any(there[0] != ways, axis=0)] = np.inf
+    best, each = np.argmin(squares, axis=0), np.arange(len(numbers))
+    on_edge = places[best, :, each].T
+    return further[best, each], np.rint(np.where(np.abs(on_edge) == HALF, ways, on_edge)).astype(np.int64)
 
 
 def _share(arms: FloatArray, of: FloatArray) -> FloatArray:
