@@ -135,7 +135,7 @@ def turns(outside: FloatArray, point: FloatArray) -> float:
     claim="Points in the built-in bodies and round them are on the side of their outside that the exact shape's solid angle tells, and as "
     "far from it.",
     grid={"body": list(BODIES)},
-    tier="gate",
+    tier=lambda body: "gate" if body in ("pipe", "cylinder", "ball", "torus", "shell", "wedge", "sector") else "nightly",
     bounds={
         "off": Bound(at_most=2e-3, reason="discretisation: flat cells of a full circle are off it by a thousandth of its size"),
         "sides": Bound(0.0, 0.0, "definition: points that are told to be on the other side"),
