@@ -23,6 +23,7 @@ class Datasets:
     def __init__(self, file: h5py.File) -> None:
         self._file = file
         self._opened: dict[str, h5py.h5d.DatasetID] = {}
+        self._named: dict[str, set[str]] = {}
 
     def make(self, group: str, quantities: Mapping[str, layout.Quantity]) -> None:
         """Empty datasets of a group, where the quantities tell the shape of a row."""
@@ -36,8 +37,13 @@ class Datasets:
 
     def put_named(self, group: str, quantity: layout.Quantity, values: Mapping[str, float] | Mapping[str, str], row: int) -> None:
         """Write one row of each dataset of a group; a name that only some steps have is filled up."""
-        for name in {*self._file[group], *values}:
+        names = self._named[group] = {*(self._named.get(group) or self._file[group]), *values}
+        for name in names:
             self.put_row(f"{group}/{name}", quantity, values.get(name, quantity.missing), row)
+
+    def rows(self, path: str) -> int:
+        """How many rows a dataset has."""
+        return int(self._dataset(path).shape[0])
 
     def put_row(self, path: str, quantity: layout.Quantity, value: Any, row: int) -> None:
         """Write row `row` of a dataset, its last one; make the dataset at its first row."""
@@ -55,7 +61,7 @@ class Datasets:
         """Write rows from `first` on; what lay behind them is cut off."""
         dataset = self._dataset(path)
         dataset.set_extent((first + len(rows), *rows.shape[1:]))
-        if rows.size and dataset.dtype == layout.TEXT:
+        if rows.size and rows.dtype == layout.TEXT:
             h5py.Dataset(dataset)[first:] = rows
         elif rows.size:
             place = dataset.get_space()

@@ -102,6 +102,7 @@ class ResultsWriter(Observer):
         self._problem = problem
         self._states = states
         self._longer: str | None = None
+        self._resumed, self._last = False, 0
         self._unstored, self._stored, self._took = False, monotonic(), 0.0
         if overwrite or not self.path.exists():
             self._hold(h5py.File.in_memory(libver=LIBVER))
@@ -110,6 +111,7 @@ class ResultsWriter(Observer):
         elif resume:
             with Results(self.path) as stored:
                 self._longer = scene_text if goes_on_longer(stored, problem) else None
+                self._resumed, self._last = True, max(stored.steps, default=0)
             self._hold(h5py.File.in_memory(read(self.path)[SEAL_SIZE:], libver=LIBVER))
         else:
             raise ResultsError(f"{self.path} exists already: resume it, overwrite it, or name another results file")
@@ -125,10 +127,12 @@ class ResultsWriter(Observer):
     def recorded(self, result: StepResult) -> None:
         """Append the step; on return it is on the disk, or will be soon where writing takes long."""
         self._unstored = False  # an interrupt on the way leaves a part of a step, which is not to be kept
-        self._lengthen()
-        self._renew()
+        if self._resumed:
+            self._lengthen()
+            self._renew()
+            self._resumed = False
         self._append(result)
-        self._unstored = True
+        self._unstored, self._last = True, result.step
         self.keep_up()
 
     def keep_up(self) -> None:
@@ -198,9 +202,9 @@ class ResultsWriter(Observer):
         self._file.attrs["format_version"] = layout.FORMAT_VERSION
 
     def _append(self, result: StepResult) -> None:
-        datasets, steps = self._datasets, self._file["curves/step"]
-        row = len(steps)
-        if row and result.step <= steps[-1]:
+        datasets = self._datasets
+        row = datasets.rows("curves/step")
+        if result.step <= self._last:
             raise ResultsError(
                 f"{self.path} holds load step {result.step} already: resume from its last step, or name another results file"
             )
@@ -230,7 +234,7 @@ class ResultsWriter(Observer):
         extend("log/notes", [note for i in iterations for note in i.notes])
 
     def _put_state(self, result: StepResult) -> None:
-        kept = len(self._file["states/step"])
+        kept = self._datasets.rows("states/step")
         if self._states == "last":
             kept = max(kept - 1, 0)
         self._datasets.put_row("states/step", layout.STATE_STEP, result.step, kept)
