@@ -106,7 +106,8 @@ def toggling(seen: Sequence[bytes], visited: Sequence[IntArray], by_poles: np.nd
     if about.size:
         return (
             f"; nearest points of slave quadrature points {_first_few(about)} go round a pole of the master: pressed in, it is a hollow "
-            "vertex, and what is above one has no nearest point of its own. Press beside it, or take a mesh without a pole there"
+            "vertex, and what is above one has no nearest point of its own. Press beside it, take so many quadrature points "
+            "(contacts.NAME.quadrature) that none is above it, an even number in an element whose middle is, or a mesh without a pole there"
         )
     if crossing.size:
         return (
