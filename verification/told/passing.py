@@ -84,6 +84,6 @@ def told(level: str, changes: tuple[str, ...]) -> list[tuple[str, str, str]]:
     },
 )
 def passing() -> dict[str, float]:
-    """How many of fourteen, and in a stage of several load steps."""
+    """How many of thirteen, and in a stage of several load steps."""
     others = [name for name, (level, changes, said) in SCENES.items() if told(level, changes) != said]
     return {"others": float(len(others)), "early": before_the_end()}
