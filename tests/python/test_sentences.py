@@ -23,6 +23,7 @@ from told.beyond_edges import punch
 from told.dents import scene as at_points
 from told.given_up import all_told, without_digits
 from told.held_inside import ON_EDGE as HELD_INSIDE
+from told.in_itself import STRIP, wound
 from told.long_masters import CAP
 from told.mirrored import of_half
 from told.narrow import BALL, BALLS, STRIPS, depth, strip
@@ -50,6 +51,7 @@ from isomortar.scene import Scene
 from isomortar.told.before import doubts
 from isomortar.told.during import leaving, pulling
 from isomortar.told.during.advice import StepAdvice
+from isomortar.told.during.in_itself import InItself
 from isomortar.told.during.inside_out import InsideOut
 from isomortar.told.during.leaving import Leaving
 from isomortar.told.during.snapping import Snapping
@@ -205,6 +207,8 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
     observer = Warned()
     list(Simulation(Scene.from_toml(BENT.replace("LEVEL", "0")).problem(), observer).run())
     yield "in each other", observer.said[-1]
+    flat = Scene.from_toml(STRIP).problem()
+    yield "in itself", next(InItself(flat).after_stage([wound(flat.body("strip"), 370.0, 0.5)], "one"))
     observer = Warned()
     list(Simulation(Scene.from_toml(FLOOR, overrides=[DOWN]).problem(), observer).run())
     yield "behind", observer.said[-1]

@@ -103,6 +103,15 @@ def _cells(face: str, grid: FloatArray, other: FloatArray) -> Cells:
     return Cells(_centres(grid), normals, 0.5 * length, sides, thickness, across.shape[:2])
 
 
+def triangles(patch: Patch, face: str) -> FloatArray:
+    """Corners of two triangles for each cell of a face, shape (2 n, 3, 3), seen from out of the body counter-clockwise."""
+    grid = _grid(patch, face)
+    if face[1] == "1":
+        grid = grid[::-1]
+    a, b, c, d = (part.reshape(-1, 3) for part in (grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]))
+    return np.concatenate([np.stack([a, c, b], axis=1), np.stack([a, d, c], axis=1)])
+
+
 def edges(patch: Patch, face: str, closed: tuple[bool, bool]) -> FloatArray:
     """Points along the edges of a face, shape (n, 3): none along directions that are closed, and of poles, which are one point."""
     grid = _grid(patch, face)

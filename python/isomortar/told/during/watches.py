@@ -13,6 +13,7 @@ from isomortar.told.during.behind import Behind
 from isomortar.told.during.bending import Bending
 from isomortar.told.during.coarse import Coarse
 from isomortar.told.during.held_inside import HeldInside
+from isomortar.told.during.in_itself import InItself
 from isomortar.told.during.inside_out import InsideOut
 from isomortar.told.during.leaving import Leaving
 from isomortar.told.during.lost import LostDigits
@@ -51,7 +52,7 @@ class Watches:
         self._coarse, self._advice = Coarse(equilibrium, states), StepAdvice(problem, step, states)
         self._pivoting, self._held_inside = Pivoting(equilibrium), HeldInside(equilibrium)
         self._leaving = Leaving([mechanics.pair for mechanics in equilibrium.pairs], states)
-        self._of_stages = [watch for watch in (Passing(problem), OtherFaces(problem), Behind(problem)) if watch.needed]
+        self._of_stages = [watch for watch in (Passing(problem), OtherFaces(problem), Behind(problem), InItself(problem)) if watch.needed]
 
     def look(self, before: FloatArray, after: FloatArray, share: float) -> None:
         """Look at a load increment, a share of the longest one, from positions to others.
