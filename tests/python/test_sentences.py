@@ -30,6 +30,7 @@ from told.narrow import BALL, BALLS, STRIPS, depth, strip
 from told.other_faces import INTO_A_WALL
 from told.passing import SCENE as BENT
 from told.pivoting import FLAT as TURNED
+from told.rolling import RING as ROLLED
 from told.unstable import LYING
 from told.unstable import column as slender
 from told.weights import column
@@ -243,6 +244,7 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
         "two rows of dual constraints": (BALL, (depth(0.025), 'contacts.c.enforcement="dual"')),
         "one row of constraints": (BALLS["constraints at knots"][0], (*BALLS["constraints at knots"][1], depth(0.025))),
         "turns within an element": (TURNED, ()),
+        "rolls": (ROLLED, ()),
         "held inside": (HELD_INSIDE, ()),
         "between points": (CROSSED, crossed("greville", 12, 13)),
         "blind between points": (BALL, (depth(0.03), 'contacts.c.enforcement="greville"', *ORDER_3)),

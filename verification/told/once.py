@@ -7,6 +7,7 @@ from dataclasses import replace
 from told.astray import TURNING
 from told.other_units import of_a_run
 from told.pivoting import FLAT
+from told.rolling import RING
 from told.runs import LONG, PLATES
 from told.wrong.runs import RUNS
 
@@ -17,6 +18,7 @@ from isomortar.scene import Scene
 #: Runs of which something is said; of friction that is led astray a second time on the way back.
 TOLD = {name: text for name, (text, words) in (RUNS | PLATES).items() if words and name not in LONG}
 TOLD["astray"] = TURNING.replace("[0, 0.4, 0] }]", '[0, 0.4, 0] }, { name = "b", steps = 1, motions.top.translate = [0, -0.4, 0] }]')
+TOLD["rolling"] = RING
 #: A square that turns within an element, and turns on.
 TOLD["pivoting"] = FLAT.replace('"turn"\nsteps = 1', '"turn"\nsteps = 2')
 

@@ -96,12 +96,17 @@ def _turns(pair: Pair, positions: FloatArray, projections: _bindings.Projections
     """Share of the slips' squares about their mean that the nearest turn of all of them has, with weights of points (theory 9.21)."""
     acts = weights > 0.0
     share = weights[acts] / weights[acts].sum()
-    slips = np.einsum("qa,qai->qi", projections.slip[acts], _tangents(pair, positions, projections)[acts])
+    slips = slip_vectors(pair, positions, projections)[acts]
     places, ways = (values - share @ values for values in (slave_points(pair, positions)[acts], slips))
     arms = np.einsum("q,qi,qj->ij", share, places, places)
     turn = np.linalg.pinv(np.trace(arms) * np.eye(3) - arms) @ (share @ np.cross(places, ways))
     squares = float(share @ np.square(ways).sum(axis=1))
     return 1.0 - float(share @ np.square(ways - np.cross(turn, places)).sum(axis=1)) / squares if squares > 0.0 else 0.0
+
+
+def slip_vectors(pair: Pair, positions: FloatArray, projections: _bindings.Projections) -> FloatArray:
+    """Slips of a slave's points in the last increment, shape (points, 3)."""
+    return np.asarray(np.einsum("qa,qai->qi", projections.slip, _tangents(pair, positions, projections)))
 
 
 def _tangents(pair: Pair, positions: FloatArray, projections: _bindings.Projections) -> FloatArray:

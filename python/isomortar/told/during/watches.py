@@ -22,6 +22,7 @@ from isomortar.told.during.other_faces import OtherFaces
 from isomortar.told.during.passing import Passing
 from isomortar.told.during.pivoting import Pivoting
 from isomortar.told.during.pulling import Pulling
+from isomortar.told.during.rolling import Rolling
 from isomortar.told.during.sharing import Sharing
 from isomortar.told.during.shrunk import Shrunk
 from isomortar.told.during.small_strains import SmallStrains
@@ -50,7 +51,7 @@ class Watches:
         self._snapping, self._inside_out, self._unstable = Snapping(equilibrium), InsideOut(equilibrium), Unstable(equilibrium)
         self._mirrored, self._shrunk, self._bending = Mirrored(equilibrium), Shrunk(equilibrium), Bending(equilibrium)
         self._coarse, self._advice = Coarse(equilibrium, states), StepAdvice(problem, step, states)
-        self._pivoting, self._held_inside = Pivoting(equilibrium), HeldInside(equilibrium)
+        self._pivoting, self._rolling, self._held_inside = Pivoting(equilibrium), Rolling(equilibrium), HeldInside(equilibrium)
         self._leaving = Leaving([mechanics.pair for mechanics in equilibrium.pairs], states)
         self._of_stages = [watch for watch in (Passing(problem), OtherFaces(problem), Behind(problem), InItself(problem)) if watch.needed]
 
@@ -82,6 +83,7 @@ class Watches:
         yield from self._inside_out.after_step(step)
         yield from self._astray.after_step(balance, step)
         yield from self._pivoting.after_step(balance, step)
+        yield from self._rolling.after_step(balance, step)
         yield from self._coarse.after_step(balance, step, ends)
         yield from self._leaving.after_step(step, result.contacts, result.state.contacts)
         yield from self._advice.after_step(step, result.contacts, result.state.contacts)
