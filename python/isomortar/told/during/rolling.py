@@ -46,12 +46,13 @@ class Roll:
 
 
 @frozen
-class Step:
-    """Of a load step: the middle of what presses on the slave at rest, its width along a way by its `spread`, and what crept."""
+class Pressed:
+    """Of a load step: what friction bears at the slave's points, the middle of its force on the slave at rest, and how far that spreads."""
 
+    bears: FloatArray
+    share: FloatArray
     place: FloatArray
     spread: FloatArray
-    creep: float
 
     def ways(self, before: FloatArray | None) -> float:
         """How far contact has gone along its slave, in its widths."""
@@ -78,14 +79,15 @@ class Rolling:
     def after_step(self, balance: Balance, step: int) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to."""
         for number, mechanics in list(self._watched.items()):
-            found = None if isinstance(balance.kinematics[number], PutOff) else step_of(self._equilibrium, mechanics, balance, number)
+            found = None if isinstance(balance.kinematics[number], PutOff) else _pressed(self._equilibrium, mechanics, balance, number)
             if found is None:
                 self._rolls[number] = Roll()
                 continue
             roll = self._rolls[number]
             ways, roll.place = found.ways(roll.place), found.place
             if roll.ways > 0.0 or ways > MOVES:  # on long elements it goes on in jerks
-                roll.ways, roll.creep = roll.ways + ways, roll.creep + found.creep
+                creep = _creep(self._equilibrium, mechanics, balance, number, found)
+                roll.ways, roll.creep = roll.ways + ways, roll.creep + creep
             if roll.off > MOST:
                 del self._watched[number]
                 yield _sentence(mechanics.pair, roll.off, step)
@@ -97,34 +99,29 @@ def _sticks(mechanics: PairMechanics) -> bool:
     return mechanics.friction.acts and contact.enforcement == "mortar" and contact.elastic_slip == 0.0
 
 
-def step_of(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance, number: int) -> Step | None:
-    """Of the last increment of a contact with friction (theory 9.25); None: nothing presses, or gives way.
-
-    Parameters
-    ----------
-    equilibrium : Equilibrium
-    mechanics : PairMechanics
-        Of a contact of averages with the slave's functions.
-    balance : Balance
-    number : int
-        Of that contact.
-    """
-    pair, response = mechanics.pair, balance.responses[number]
-    projections, test = balance.kinematics[number].projections, mechanics.pair.slave.test
+def _pressed(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance, number: int) -> Pressed | None:
+    """Of a contact with friction; None: nothing presses."""
+    pair, projections = mechanics.pair, balance.kinematics[number].projections
     counts = (projections.found > 0) & (projections.slips > 0)
-    bears = mechanics.radius(np.maximum(pair.field(response.pressure), 0.0)) * counts
+    bears = mechanics.radius(np.maximum(pair.field(balance.responses[number].pressure), 0.0)) * counts
     forces = pair.slave.area * bears
-    gives = float(pressed_in(equilibrium, pair, projections, bears).sum())
-    if not forces.any() or not gives > 0.0:
+    if not forces.any():
         return None
     share = forces / forces.sum()
+    places = slave_points(pair, equilibrium.numbering.reference)
+    apart = places - share @ places
+    return Pressed(bears, share, share @ places, np.einsum("q,qi,qj->ij", share, apart, apart))
+
+
+def _creep(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance, number: int, pressed: Pressed) -> float:
+    """How far what sticks crept in the last increment, over how far it is pressed in by what friction bears (theory 9.25)."""
+    pair, response = mechanics.pair, balance.responses[number]
+    projections, test = balance.kinematics[number].projections, pair.slave.test
+    gives = float(pressed_in(equilibrium, pair, projections, pressed.bears).sum())
     nodes = np.repeat(test.nodes, pair.slave.per_element, axis=0)
     sticks = np.einsum("qn,qn->q", test.values, response.state[nodes] == PointState.STICK)
     creeps = sticks[:, None] * slip_vectors(pair, balance.positions, projections)
-    places = slave_points(pair, equilibrium.numbering.reference)
-    middle = share @ places
-    apart = places - middle
-    return Step(middle, np.einsum("q,qi,qj->ij", share, apart, apart), float(np.sqrt(share @ np.square(creeps).sum(axis=1))) / gives)
+    return float(np.sqrt(pressed.share @ np.square(creeps).sum(axis=1))) / gives if gives > 0.0 else 0.0
 
 
 def _sentence(pair: Pair, off: float, step: int) -> str:
