@@ -6,6 +6,7 @@ import shutil
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,8 @@ from isomortar.harness import Bound, case
 
 #: Of a table that is not filled, so many slots are taken; every so many of those taken are let go again.
 SOME, EACH = 500, 7
+#: How often one slot is let go and taken again: more often than eight bits count, so that its generations come round at none of theirs.
+TURNS = 300
 
 
 @dataclass(frozen=True)
@@ -56,6 +59,7 @@ _BOUNDS = {
     "first": Bound(0.0, 0.0, "definition: handles other than those of slots 0, 1, 2, ... in the first generation"),
     "again": Bound(0.0, 0.0, "definition: handles other than those of the slots that were let go, the lowest first, one generation on"),
     "stale": Bound(0.0, 0.0, "definition: handles that were let go, or never given out, and are not refused"),
+    "turns": Bound(0.0, 0.0, "definition: handles of one slot, let go and taken over and over, other than one generation on, or not stale"),
 }
 _FULL = {"beyond": Bound(0.0, 0.0, "definition: calls that a full table does not answer with the status of no memory")}
 
@@ -63,7 +67,6 @@ _FULL = {"beyond": Bound(0.0, 0.0, "definition: calls that a full table does not
 @case(
     claim="Slots are given out from the lowest that is free up to the last; a full table refuses; what was let go is stale for good, and "
     "its slot is given out again in another generation.",
-    tier=lambda table, filled: "nightly" if (table, filled) == ("descriptors", True) else "gate",  # a second: slots are looked through
     grid={"table": list(TABLES), "filled": [False, True]},
     bounds=lambda table, filled: _BOUNDS | (_FULL if filled else {}),  # noqa: ARG005
 )
@@ -83,6 +86,15 @@ def slots(table: str, filled: bool) -> dict[str, float]:
         refused = sum(one.release(library, handle) != Status.OK for handle in gone[::-1])
         found["again"] = refused + sum(one.keep(library) != (handle, Status.OK) for handle in again)
         found["stale"] = sum(one.release(library, handle) != Status.STALE_HANDLE for handle in (*gone, *never))
+        found["turns"] = turned(one, library, again[0])
         for handle in {*first, *again} - {*gone}:
             one.release(library, handle)
     return {name: float(number) for name, number in found.items()}
+
+
+def turned(one: Table, library: Any, handle: int) -> int:
+    """How many handles of the lowest slot are not what they should be, when it is let go and taken again over and over."""
+    handles = [handle + turn * one.slots for turn in range(TURNS + 1)]
+    refused = sum(one.release(library, old) != Status.OK or one.keep(library) != (new, Status.OK) for old, new in pairwise(handles))
+    stale = sum(one.release(library, old) != Status.STALE_HANDLE for old in handles[:-1])
+    return refused + stale + (one.release(library, handles[-1]) != Status.OK)
