@@ -257,7 +257,11 @@ def test_states_that_nothing_computes_are_refused_by_whoever_reads_them(results:
     content = io.BytesIO(results.read_bytes())
     with h5py.File(content, "a") as file:
         kept = file[name][()]
-        file[name][...] = kept * value if np.ndim(value) and 0.0 in value else np.broadcast_to(value, kept.shape)
+        if np.ndim(value):
+            kept = kept * value if 0.0 in value else np.broadcast_to(value, kept.shape)
+        else:  # one number of the last state
+            kept[-1].ravel()[-1] = value
+        file[name][...] = kept
     results.write_bytes(sealed(content.getvalue()))
     with isomortar.Results(results) as edited, pytest.raises(ResultsError, match=words):
         edited.last_step()

@@ -260,6 +260,16 @@ def test_bodies_are_drawn_with_the_pressure_in_colour() -> None:
     assert [axes.get_title(loc="left") for axes in figure.axes[:2]] == ["rolling, load step 3 (press)", "tyre from the master's side"]
 
 
+@pytest.mark.parametrize(("least", "end"), [(-0.5, "min"), (0.0, "neither")])
+def test_a_bar_of_pressures_has_a_pointed_end_below_where_a_face_pulls(least: float, end: str) -> None:
+    made, step = problem(), quiet(3)
+    pressure = np.ones_like(step.state.contacts[0].pressure)
+    pressure[0] = least
+    contacts = (replace(step.state.contacts[0], pressure=pressure), *step.state.contacts[1:])
+    picture = draw_bodies(made, replace(step, state=replace(step.state, contacts=contacts)), 0)
+    assert [bar.extend for axes in picture.axes if (bar := getattr(axes, "_colorbar", None))] == [end]
+
+
 def parts(axes: Axes) -> int:
     """Quadrilaterals that are drawn."""
     return sum(len(collection.get_facecolors()) for collection in axes.collections)
