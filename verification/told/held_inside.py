@@ -42,17 +42,20 @@ FLAT: Changes = (
 )
 #: A third of the way.
 LESS = "stages.press.motions.top.translate=[0, 0, -0.01]"
-#: Scenes in which a held edge is inside what is rigid, how many places that are ends and middles of elements, and how deep they are.
+#: Scenes in which an edge that is held, or held across what is rigid alone, is inside that, how many places that are ends and middles of elements, and how deep they are.
 INSIDE: dict[str, tuple[str, Changes, int, float]] = {
     "drum": (ON_EDGE, (), 3, 0.6 - (0.05**2 + 0.57**2) ** 0.5),
     "averaged": (ON_EDGE, ('contacts.c.projection="averaged"',), 3, 0.6 - (0.05**2 + 0.57**2) ** 0.5),
     "dual": (ON_EDGE, ('contacts.c.enforcement="dual"', LESS), 3, 0.6 - (0.05**2 + 0.59**2) ** 0.5),
     "rigid slave": (ON_EDGE, (*FLAT, LESS), 3, 0.01),
+    "across alone": (ON_EDGE, (*FLAT, LESS, 'supports.side.components=["z"]'), 3, 0.01),
 }
-#: Scenes in which none is: the drum is beside it, or what is held is along its face, or the drum goes up with what is held.
+#: Scenes in which none is: the drum is beside it, or what is held is along its face, or is one of two components across it, or the drum
+#: goes up with what is held.
 OUTSIDE: dict[str, tuple[str, Changes]] = {
     "beside": (BESIDE, ()),
     "along": (ON_EDGE, ('supports.side.components=["x", "y"]',)),
+    "one of two": (ON_EDGE, ('supports.side.components=["z"]',)),
     "open": (ON_EDGE, ("stages.press.motions.top.translate=[0, 0, 0.03]",)),
     "soft": (BESIDE, ("bodies.b.rigid=false",)),
 }
