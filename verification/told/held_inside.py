@@ -42,7 +42,8 @@ FLAT: Changes = (
 )
 #: A third of the way.
 LESS = "stages.press.motions.top.translate=[0, 0, -0.01]"
-#: Scenes in which an edge that is held, or held across what is rigid alone, is inside that, how many places that are ends and middles of elements, and how deep they are.
+#: Scenes in which an edge that is held, or held across what is rigid alone, is inside that, how many places that are ends and middles of
+#: elements, and how deep they are.
 INSIDE: dict[str, tuple[str, Changes, int, float]] = {
     "drum": (ON_EDGE, (), 3, 0.6 - (0.05**2 + 0.57**2) ** 0.5),
     "averaged": (ON_EDGE, ('contacts.c.projection="averaged"',), 3, 0.6 - (0.05**2 + 0.57**2) ** 0.5),
