@@ -6,8 +6,9 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import ExitStack
+from contextlib import ExitStack, nullcontext
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from typer.testing import CliRunner
@@ -120,6 +121,38 @@ def test_what_a_dask_worker_had_no_time_for_is_measured_by_another(root):
         results = measured_on(there, root, leave)
     assert left
     assert {result.state for result in results.values()} == {"passed"}
+
+
+class Cluster:
+    """Stands in for a client of Dask's: notes what is sent to it, and what of that is cancelled."""
+
+    def __init__(self, *_, **__):
+        self.sent, self.cancelled = [], []
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def submit(self, *_, **__):
+        self.sent.append(SimpleNamespace(add_done_callback=lambda _: None))
+        return self.sent[-1]
+
+    def cancel(self, futures, force=False):
+        self.cancelled.append((list(futures), force))
+
+
+@pytest.mark.parametrize("ending", [None, KeyboardInterrupt, SystemExit, ValueError])
+def test_all_that_was_sent_to_a_cluster_is_cancelled_whatever_ends_a_run(ending, monkeypatch):
+    client = Cluster()
+    monkeypatch.setitem(sys.modules, "distributed", SimpleNamespace(Client=lambda *_, **__: client))
+    with pytest.raises(ending) if ending else nullcontext(), dask_cluster("tcp://nowhere:1") as submit:
+        for number in range(3):
+            submit({"number": number})
+        if ending:
+            raise ending
+    assert client.cancelled == ([(client.sent, True)] if ending else [])
 
 
 SWEEP = """
