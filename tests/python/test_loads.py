@@ -14,9 +14,13 @@ from told.wrong.loads import GOOD, HALVED, UNEVEN, WRONG
 from isomortar import run
 from isomortar.cli.check import lines
 from isomortar.errors import InputError
+from isomortar.geometry.patch import FACES
+from isomortar.geometry.primitives import box
+from isomortar.geometry.refinement import mesh
 from isomortar.march.outlook import outlook
 from isomortar.march.simulation import Simulation
 from isomortar.model.entities import Stage
+from isomortar.model.loads import control_areas
 from isomortar.model.supports import factor_at
 from isomortar.program.getfem import GetFEM
 from isomortar.results.definition import read_problem, write_problem
@@ -42,6 +46,15 @@ def test_what_is_not_symmetric_is_refused(load: str, field: str, text: str) -> N
         Scene.from_toml(HALVED.replace("LOAD", load)).problem()
     assert raised.value.field == field
     assert text in str(raised.value)
+
+
+@pytest.mark.parametrize("orders", [(1, 1, 6), (6, 1, 1), (1, 6, 1)])
+@pytest.mark.parametrize("face", FACES)
+def test_points_of_a_load_are_enough_for_each_order_of_its_face(face: str, orders: tuple[int, int, int]) -> None:
+    """Bernstein's functions of order p over an edge of length one all have the integral 1 / (p + 1)."""
+    patch = mesh(box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), ("N", "N", "N"), orders, (1, 1, 1))
+    integral = 1.0 / np.prod([direction.order + 1 for direction in patch.face_directions(face)])
+    np.testing.assert_allclose(control_areas(patch, face)[patch.face_points(face)], integral, rtol=1e-12)
 
 
 def test_a_face_without_area_is_refused() -> None:

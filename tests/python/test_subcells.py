@@ -108,3 +108,25 @@ def test_lines_are_counted_along_the_middle_of_cells() -> None:
 def squeezed(patch: Patch) -> Patch:
     """A tenth as wide along y."""
     return replace(patch, control_points=patch.control_points * [1.0, 0.1, 1.0])
+
+
+#: A block on a plate of more elements.
+ON_A_PLATE = """
+format = 1
+bodies.a.geometry = { kind = "box", lower = [0.1, 0.1, 0], upper = [0.9, 0.9, 1] }
+bodies.a.mesh = { order = SLAVE, elements = [2, 2, 1] }
+bodies.base = { geometry = { kind = "box", lower = [0, 0, -1], upper = [1, 1, 0] }, mesh = { order = MASTER, elements = [5, 5, 1] } }
+contacts.c = { slave = "a.w0", master = "base.w1", projection = "closest" }
+supports = { base.face = "base.w0", top.face = "a.w1" }
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.01] }]
+"""
+
+
+@pytest.mark.parametrize("slave", [(1, 1), (1, 3), (3, 1)])
+@pytest.mark.parametrize("master", [(1, 1), (1, 5), (5, 1), (5, 5)])
+def test_points_of_cells_follow_the_order_along_each_and_the_highest_of_the_master(slave: tuple[int, int], master: tuple[int, int]) -> None:
+    """Half of both orders together, that of the master if it is higher, and two more (theory 10.10); a foot runs along both."""
+    text = ON_A_PLATE.replace("SLAVE", f"[{slave[0]}, {slave[1]}, 1]").replace("MASTER", f"[{master[0]}, {master[1]}, 1]")
+    contact = Scene.from_toml(text).problem().contacts[0]
+    assert contact.subcells > 0
+    assert contact.quadrature == tuple((order + max(order, *master)) // 2 + 2 for order in slave)
