@@ -58,6 +58,28 @@ def test_displacement_and_rotation_are_those_of_the_motions(results: Results) ->
         results.curve("displacement", contact="tread")
 
 
+#: A bar whose end a force and a moment move and turn.
+BENT = """
+format = 1
+bodies.bar = { geometry = { kind = "box", lower = [0, 0, 0], upper = [2, 1, 1] }, mesh = { order = 1, elements = [2, 1, 1] } }
+supports.base.face = "bar.u0"
+supports.end = { face = "bar.u1", force = { y = 0.05, z = -0.1 }, moment = 0.3, axis = [1, 0, 0] }
+stages = [{ name = "bend", steps = 2, motions.end.translate = [0.1, 0, 0] }]
+"""
+
+
+def test_of_a_support_that_a_force_or_a_moment_moves_it_is_what_was_recorded(tmp_path: Path) -> None:
+    """Not how far its motions alone would have led."""
+    with isomortar.run(isomortar.Scene.from_toml(BENT), tmp_path / "run.h5") as results:
+        end = results.problem.supports[-1]
+        way = results.curve("displacement", support="end")
+        assert way == pytest.approx(results.curve("centre", support="end") - end.centre, abs=1e-15)
+        assert np.all(np.abs(way[-1]) > 1e-3)
+        turned = results.curve("rotation", support="end")
+        assert turned[-1] == results.last_step().reactions[-1].rotation
+        assert abs(turned[-1]) > 0.1
+
+
 def test_it_is_the_way_of_the_recorded_centre(tmp_path: Path) -> None:
     """Of a run; before its first load step there is none."""
     scene = isomortar.Scene.load("press", ["bodies.block.mesh.elements=[2,2,1]", "stages.press.steps=3"])

@@ -147,6 +147,21 @@ def test_steps_more_go_on_at_the_same_rate() -> None:
     assert scene.with_more_steps() is scene
 
 
+def test_supports_hold_in_steps_more_as_in_the_last_stage() -> None:
+    one, two = "press", "turn"
+    lists = {"first": [one], "last": [two], "both": [one, two], "always": None}
+    faces = dict(zip(lists, ("u0", "u1", "v0", "w0"), strict=True))
+    supports = [
+        f'supports.{name} = {{ face = "a.{faces[name]}"' + (f", stages = {held}" if held else "") + " }" for name, held in lists.items()
+    ]
+    body = 'format = 1\nbodies.a = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }, mesh = { order = 1 } }'
+    stages = f'stages = [{{ name = "{one}", steps = 1 }}, {{ name = "{two}", steps = 1 }}]'
+    longer = Scene.from_toml("\n".join([body, *supports, stages])).with_more_steps(2, 1).tables
+    further = [stage.name for stage in longer.stages[2:]]
+    wanted = {name: held if held is None or two not in held else [*held, *further] for name, held in lists.items()}
+    assert {name: support.stages and list(support.stages) for name, support in longer.supports.items()} == wanted
+
+
 LONGER = "the last stage may be longer at the same rate, and stages may be added at the end"
 CHANGES = {
     "friction": ({"contacts.floor.friction": 0.1}, "contacts.floor.friction"),
