@@ -46,7 +46,7 @@ class Roll:
 
 
 @frozen
-class Bearing:
+class Carrying:
     """Of a load step: what friction bears at the slave's points, the middle of its force on the slave at rest, and how far that spreads."""
 
     bears: FloatArray
@@ -99,7 +99,7 @@ def _sticks(mechanics: PairMechanics) -> bool:
     return mechanics.friction.acts and contact.enforcement == "mortar" and contact.elastic_slip == 0.0
 
 
-def _pressed(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance, number: int) -> Bearing | None:
+def _pressed(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance, number: int) -> Carrying | None:
     """Of a contact with friction; None: nothing presses."""
     pair, projections = mechanics.pair, balance.kinematics[number].projections
     counts = (projections.found > 0) & (projections.slips > 0)
@@ -110,10 +110,10 @@ def _pressed(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balanc
     share = forces / forces.sum()
     places = slave_points(pair, equilibrium.numbering.reference)
     apart = places - share @ places
-    return Bearing(bears, share, share @ places, np.einsum("q,qi,qj->ij", share, apart, apart))
+    return Carrying(bears, share, share @ places, np.einsum("q,qi,qj->ij", share, apart, apart))
 
 
-def _creep(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance, number: int, pressed: Bearing) -> float:
+def _creep(equilibrium: Equilibrium, mechanics: PairMechanics, balance: Balance, number: int, pressed: Carrying) -> float:
     """How far what sticks crept in the last increment, over how far it is pressed in by what friction bears (theory 9.25)."""
     pair, response = mechanics.pair, balance.responses[number]
     projections, test = balance.kinematics[number].projections, pair.slave.test
