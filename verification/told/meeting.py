@@ -8,9 +8,10 @@ import numpy as np
 
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.primitives import box, sphere
+from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Body, Material
-from isomortar.told.before.meeting import depth, meet
+from isomortar.told.before.meeting import deepest, depth, meet
 
 #: Pairs that are drawn; those that are nearer to touching than cells are long are not looked at.
 PAIRS, CLEAR = 24, 0.04
@@ -88,3 +89,60 @@ def within_and_beside() -> dict[str, float]:
     ]
     whole, still = moved(cube, (0.0, 0.0, 0.0)), AT_ONE_PLACE
     return {"others": float(sum((meet(one, whole, still) != meets) + (meet(whole, one, still) != meets) for one, meets in pairs))}
+
+
+def twisted(degrees: float) -> Body:
+    """A bar that is twisted about z, whose sharpest edges are then below a right angle, and its cells no planes."""
+    patch = mesh(box((-0.5, -0.5, 0.0), (0.5, 0.5, 1.0)), ("N", "N", "N"), (2, 2, 2), (3, 3, 4))
+    x, y, z = patch.control_points.T
+    angle = np.radians(degrees) * z
+    points = np.column_stack([x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle), z])
+    return Body("bar", replace(patch, control_points=points), Material(), (2, 2, 2))
+
+
+@case(
+    claim="Cubes beside a twisted bar, clear of all that its edges come round, are not in it, however sharp these are; cubes at its axis "
+    "are.",
+    tier="gate",
+    grid={"degrees": (60.0, 110.0)},
+    bounds={
+        "in it": Bound(0.0, 0.0, "definition: cubes that are told to be, and are not"),
+        "not in it": Bound(0.0, 0.0, "definition: cubes that are not told to be, and are"),
+    },
+)
+def beside_a_twisted_bar(degrees: float) -> dict[str, float]:
+    """How many of ten, and of three."""
+    bar, cube = twisted(degrees), box((-0.05, -0.05, -0.05), (0.05, 0.05, 0.05))
+    angles = np.radians(np.arange(10) * 36.0 + 5.0)
+    beside = [(0.5 * np.sqrt(2.0) + 0.08) * np.array([np.cos(a), np.sin(a), 0.0]) + [0.0, 0.0, 0.06] for a in angles]
+    at_axis = [np.array([0.1, 0.0, z]) for z in (0.1, 0.5, 0.97)]
+    deep = [[depth(bar, moved(cube, tuple(place)), 0.0) for place in places] for places in (beside, at_axis)]
+    return {"in it": float(np.count_nonzero(deep[0])), "not in it": float(len(at_axis) - np.count_nonzero(deep[1]))}
+
+
+#: A cube that leans so far both ways that its corners are needles, and points in it and round it, each looked at by itself.
+NEEDLES, ROUND = 3.0, 60
+
+
+@case(
+    claim="Points in a cube that leans until its corners are needles are in it, and those round it are not; the deepest of all of them is "
+    "as deep as planes tell.",
+    tier="gate",
+    bounds={
+        "others": Bound(0.0, 0.0, "definition: points of which something else is told"),
+        "off": Bound(at_most=1e-12, reason="round-off: of the depth, over the size"),
+    },
+)
+def by_needles() -> dict[str, float]:
+    """How many of some tens, and by how much the deepest is off."""
+    lean = np.array([[1.0, 0.0, 0.0], [NEEDLES, 1.0, 0.0], [NEEDLES, 0.0, 1.0]])
+    cube = box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    body = Body("cube", replace(cube, control_points=cube.control_points @ lean), Material(), (2, 2, 2))
+    shares = np.random.default_rng(9).random((ROUND, 3)) * 1.6 - 0.3
+    apart = 1.0 / np.linalg.norm(np.cross(lean[[1, 2, 0]], lean[[2, 0, 1]]), axis=1)
+    deep = np.min(np.minimum(shares, 1.0 - shares) * apart, axis=1)
+    found = np.array([deepest(point[None], body, 0.0) for point in shares @ lean])
+    return {
+        "others": float(np.count_nonzero((found > 0.0) != (deep > 0.0))),
+        "off": abs(deepest(shares @ lean, body, 0.0) - float(deep.max())) / float(np.ptp(lean)),
+    }

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+import math
+from collections.abc import Collection, Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,13 +104,24 @@ def _cells(face: str, grid: FloatArray, other: FloatArray) -> Cells:
     return Cells(_centres(grid), normals, 0.5 * length, sides, thickness, across.shape[:2])
 
 
-def triangles(patch: Patch, face: str) -> FloatArray:
-    """Corners of two triangles for each cell of a face, shape (2 n, 3, 3), seen from out of the body counter-clockwise."""
-    grid = _grid(patch, face)
-    if face[1] == "1":
-        grid = grid[::-1]
-    a, b, c, d = (part.reshape(-1, 3) for part in (grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]))
-    return np.concatenate([np.stack([a, c, b], axis=1), np.stack([a, d, c], axis=1)])
+def triangles(patch: Patch, faces: Iterable[str]) -> FloatArray:
+    """Corners of two triangles for each cell of some faces, shape (2 n, 3, 3), seen from out of the body counter-clockwise."""
+    found = []
+    for face in faces:
+        grid = _grid(patch, face)
+        if face[1] == "1":
+            grid = grid[::-1]
+        a, b, c, d = (part.reshape(-1, 3) for part in (grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]))
+        found += [np.stack([a, c, b], axis=1), np.stack([a, d, c], axis=1)]
+    return np.concatenate(found)
+
+
+def spread(count: int, some: int) -> int:
+    """Every which of so many cells makes about some of them, spread over the faces: it has no part in common with `CELLS` in a row."""
+    step = max(1, count // some)
+    while math.gcd(step, CELLS) > 1:
+        step += 1
+    return step
 
 
 def edges(patch: Patch, face: str, closed: tuple[bool, bool]) -> FloatArray:

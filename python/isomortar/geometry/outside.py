@@ -11,8 +11,9 @@ from isomortar.geometry.nearest import nearest
 from isomortar.geometry.patch import FloatArray, IntArray
 
 #: Share of a square of a distance by which a cell that a point is straight above is nearer than one that it is beside of, as far away: at
-#: edges the latter does not tell on which side of it the point is. A tenth of a per cent of the distance, more than cells leave open.
-STRAIGHT = 2e-3
+#: edges the latter does not tell on which side of it the point is. Cells that are twisted leave open 1e-4 of the size, and where edges are
+#: sharper than a right angle 0.2 % of the distance was too little, a twelfth of the size away.
+STRAIGHT = 2e-2
 #: A face of less than this share of the largest one's area is a line or a point: the axis of a cylinder, a pole of a ball.
 NO_AREA = 1e-9
 #: Share of a cell's sides from its middle to its edges: what is farther is nearer to the next one, or beside the face, if there is none.
@@ -21,6 +22,9 @@ HALF = 0.5
 
 def heights_above(points: FloatArray, sides: Collection[Cells]) -> tuple[FloatArray, FloatArray]:
     """How high points are above all of some faces, that enclose a body, and the outward normals of the cells that are nearest.
+
+    Where three faces meet in a sharp corner, or a body is folded closer than its cells are long, the side may be the other one: `turns`
+    tells which it is.
 
     Parameters
     ----------
@@ -35,7 +39,7 @@ def heights_above(points: FloatArray, sides: Collection[Cells]) -> tuple[FloatAr
     normals : ndarray, shape (n, 3)
     """
     least = NO_AREA * np.max([side.areas.sum() for side in sides])
-    bounding = [side for side in sides if side.areas.sum() > least]  # the others are lines and points within the body
+    bounding = [side for side in sides if side.areas.sum() >= least]  # the others are lines and points within the body
     bounds = np.stack([_bounds(points, side) for side in bounding])
     order, scores = np.argsort(bounds, axis=0), np.full(len(points), np.inf)
     arms, normals = np.zeros((len(points), 3)), np.zeros((len(points), 3))
@@ -49,6 +53,15 @@ def heights_above(points: FloatArray, sides: Collection[Cells]) -> tuple[FloatAr
                 those = those[nearer]
                 scores[those], arms[those], normals[those] = found[nearer], further[nearer], out[nearer]
     return np.copysign(np.linalg.norm(arms, axis=1), np.einsum("ij,ij->i", arms, normals)), normals
+
+
+def turns(outside: FloatArray, place: FloatArray) -> float:
+    """How often a closed surface of triangles, (n, 3, 3), goes round a place (van Oosterom and Strackee 1983): once, if that is within."""
+    a, b, c = np.moveaxis(outside - place, 1, 0)
+    x, y, z = (np.linalg.norm(of, axis=1) for of in (a, b, c))
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c))
+    rest = x * y * z + np.einsum("ij,ij->i", a, b) * z + np.einsum("ij,ij->i", b, c) * x + np.einsum("ij,ij->i", c, a) * y
+    return float(np.arctan2(volume, rest).sum()) / (2.0 * np.pi)
 
 
 def _bounds(points: FloatArray, side: Cells) -> FloatArray:

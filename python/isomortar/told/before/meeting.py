@@ -7,18 +7,24 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from isomortar.geometry.outside import heights_above
+from isomortar.geometry.faces import spread, triangles
+from isomortar.geometry.outside import heights_above, turns
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.constants import NO_PART
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body
 from isomortar.model.stance import FACING
+from isomortar.model.supports import BoolArray
 
 #: Cells of a body's outside that are compared with those of another one.
 SOME = 1500
 #: Shares of the way from where a body meets another one to where it begins, at which others may be between: seven places, so that layers
 #: as thin as an eighth of the way are found.
 PLACES = tuple(k / 8 for k in range(1, 8))
+#: Points that are looked at of those that seem to be in a body, the deepest first; of sharp corners some dozens seem to be, and are not.
+LOOKED = 60
+#: How often the outside goes round a place from which on that is within, halfway between never and once.
+HALF_ROUND = 0.5
 #: Depth over the thickness of the thinner body from which on bodies are in each other: what contacts leave open is below it.
 PASSED = 0.01
 
@@ -36,23 +42,35 @@ def _is_at(one: Body, other: Body, way: FloatArray, size: float, between: Sequen
     if not len(points):
         return False
     above, out = heights_above(points, other.outside.values())
-    facing = np.einsum("ij,ij->i", normals, out) < FACING
-    points = points[(above < -NO_PART * size) | (facing & (above < NO_PART * size))]
+    touches = (np.einsum("ij,ij->i", normals, out) < FACING) & (np.abs(above) < NO_PART * size)
+    within = above < -NO_PART * size
+    came = ~_through(points, way, size, between if (touches | within).any() else ())
+    return bool((touches & came).any()) or deepest(points[within & came], other, NO_PART * size) > 0.0
+
+
+def _through(points: FloatArray, way: FloatArray, size: float, between: Sequence[Body]) -> BoolArray:
+    """Which points have come through bodies on their way."""
     through = np.zeros(len(points), dtype=np.bool_)
-    for share in PLACES if len(points) and np.any(way) else ():
+    for share in PLACES if np.any(way) else ():
         for body in between:
             through |= heights_above(points - share * way, body.outside.values())[0] < -NO_PART * size
-    return not through.all()
+    return through
 
 
 def depth(one: Body, other: Body, least: float) -> float:
     """By how much parts of the outside of one body are in another one at most, or the other way round; 0 if by no more than the least."""
-    still, deepest = np.zeros(3), least
-    for first, second in ((one, other), (other, one)):
-        points = _middles(first, second, still, -least)[0]
-        if len(points):
-            deepest = max(deepest, -float(heights_above(points, second.outside.values())[0].min()))
-    return deepest if deepest > least else 0.0
+    still = np.zeros(3)
+    return max(deepest(_middles(*bodies, still, -least)[0], bodies[1], least) for bodies in ((one, other), (other, one)))
+
+
+def deepest(points: FloatArray, body: Body, least: float) -> float:
+    """How deep the deepest of some points is in a body, that its outside goes round; 0 if by no more than the least."""
+    if not len(points):
+        return 0.0
+    depths = -heights_above(points, body.outside.values())[0]
+    order = np.argsort(-depths, kind="stable")[: min(LOOKED, np.count_nonzero(depths > least))]
+    outside = triangles(body.patch, body.outer) if len(order) else np.zeros((0, 3, 3))
+    return next((float(depths[k]) for k in order if turns(outside, points[k]) > HALF_ROUND), 0.0)
 
 
 def least_depth(one: Body, other: Body) -> float:
@@ -67,7 +85,7 @@ def _middles(one: Body, other: Body, way: FloatArray, margin: float) -> tuple[Fl
     sides = one.outside.values()
     points, normals = np.concatenate([side.centres for side in sides]) + way, np.concatenate([side.normals for side in sides])
     found = in_box(points, other, margin)
-    found = found[:: max(1, len(found) // SOME)]
+    found = found[:: spread(len(found), SOME)]
     return points[found], normals[found]
 
 

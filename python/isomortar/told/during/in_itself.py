@@ -6,14 +6,15 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from isomortar.geometry.faces import triangles
+from isomortar.geometry.faces import spread, triangles
 from isomortar.geometry.nearest import product
+from isomortar.geometry.outside import turns
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Problem
 
-#: Of the cells of a body's outside every so manyth one is looked at: some 400 of six faces, spread over them.
-EVERY = 35
+#: Cells of a body's outside that are looked at, about as many, spread over it: a sixtieth of a face stands for each.
+SOME = 400
 #: Distance of such cells, over the root of the area that each stands for, up to which they are near.
 NEAR = 2.0
 #: What is left of the distance of parts that have come to each other: bodies are hardly ever squeezed to a third.
@@ -61,23 +62,26 @@ def _in_itself(body: Body, before: Body) -> FloatArray | None:
     places = _come_near(body, before)
     if not len(places):
         return None
-    outside = np.concatenate([triangles(body.patch, face) for face in body.outer])
-    return next((place for place in places if _turns(outside, place) > TWICE), None)
+    outside = triangles(body.patch, body.outer)
+    return next((place for place in places if turns(outside, place) > TWICE), None)
 
 
 def _come_near(body: Body, before: Body) -> FloatArray:
     """Places a little below those of a body's outside that are near others which were far from them."""
-    points, normals, areas = (_some(body, name) for name in ("centres", "normals", "areas"))
-    now, then = _squares(points), _squares(_some(before, "centres"))
-    near = np.flatnonzero(np.any((now < LEFT**2 * then) & (now < NEAR**2 * EVERY * areas[:, None]), axis=1))
+    every = spread(sum(len(side.areas) for side in body.outside.values()), SOME)
+    points, normals, areas, first = (
+        _some(of, name, every) for of, name in ((body, "centres"), (body, "normals"), (body, "areas"), (before, "centres"))
+    )
+    now, then = _squares(points), _squares(first)
+    near = np.flatnonzero(np.any((now < LEFT**2 * then) & (now < NEAR**2 * every * areas[:, None]), axis=1))
     near = near[:: max(1, len(near) // PLACES)]
     deep = DEEP * float(np.min([lengths.sum() for lengths in element_lengths(body.patch)]))
     return np.asarray(points[near] - deep * normals[near])
 
 
-def _some(body: Body, name: str) -> FloatArray:
-    """Of some cells of a body's outside."""
-    return np.concatenate([getattr(side, name) for side in body.outside.values()])[::EVERY]
+def _some(body: Body, name: str, every: int) -> FloatArray:
+    """Of every so manyth cell of a body's outside."""
+    return np.concatenate([getattr(side, name) for side in body.outside.values()])[::every]
 
 
 def _squares(points: FloatArray) -> FloatArray:
@@ -85,12 +89,3 @@ def _squares(points: FloatArray) -> FloatArray:
     points = points - points.mean(axis=0)
     squares = np.einsum("ij,ij->i", points, points)
     return np.asarray(squares[:, None] + squares - 2.0 * product(points, points.T))
-
-
-def _turns(corners: FloatArray, place: FloatArray) -> float:
-    """How often a closed surface of triangles goes round a place (van Oosterom and Strackee 1983)."""
-    a, b, c = np.moveaxis(corners - place, 1, 0)
-    x, y, z = (np.linalg.norm(of, axis=1) for of in (a, b, c))
-    volume = np.einsum("ij,ij->i", a, np.cross(b, c))
-    rest = x * y * z + np.einsum("ij,ij->i", a, b) * z + np.einsum("ij,ij->i", b, c) * x + np.einsum("ij,ij->i", c, a) * y
-    return float(np.arctan2(volume, rest).sum()) / (2.0 * np.pi)

@@ -8,9 +8,8 @@ import numpy as np
 
 from isomortar.geometry.faces import Cells
 from isomortar.geometry.outside import heights_above
-from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body, Face, Problem
-from isomortar.told.before.meeting import in_box, least_depth
+from isomortar.told.before.meeting import deepest, in_box, least_depth
 
 #: Volume in the other body over that of a face in contact from which on a face is told: with one flank of a wedge in contact the other one
 #: had 2.3 to 23 times as much, its ends, where edges that are in contact come in by as much as their elements do not see, up to 0.05.
@@ -64,8 +63,9 @@ class OtherFaces:
 def _depths(one: Body, other: Body, touching: set[str]) -> Mapping[str, float]:
     """How deep faces of a body without contact are in another one, of those that are in it by more than others in contact are."""
     least = least_depth(one, other)
-    found = {face: float(_depths_of(side, other, least)[0].max(initial=0.0)) for face, side in one.outside.items() if face not in touching}
-    deep = {face: depth for face, depth in found.items() if depth > least}
+    free = {face: side.centres[::EVERY] for face, side in one.outside.items() if face not in touching}
+    found = {face: deepest(points[in_box(points, other, -least)], other, least) for face, points in free.items()}
+    deep = {face: depth for face, depth in found.items() if depth > 0.0}
     if not deep:
         return {}
     held = max(_volume(one.outside[face], other) for face in touching)
@@ -73,15 +73,7 @@ def _depths(one: Body, other: Body, touching: set[str]) -> Mapping[str, float]:
 
 
 def _volume(side: Cells, other: Body) -> float:
-    """Volume between a face in another body and what it came through."""
-    depths, areas = _depths_of(side, other, 0.0)
-    return float(depths @ areas)
-
-
-def _depths_of(side: Cells, other: Body, least: float) -> tuple[FloatArray, FloatArray]:
-    """How deep middles of some cells are in another body, and their areas, but for such as are there by less than the least."""
+    """Volume between a face in another body and what it came through, by some cells."""
     middles, areas = side.centres[::EVERY], side.areas[::EVERY]
-    near = in_box(middles, other, -least)
-    if not len(near):
-        return np.zeros(0), np.zeros(0)
-    return np.maximum(-heights_above(middles[near], other.outside.values())[0], 0.0), areas[near]
+    near = in_box(middles, other, 0.0)
+    return float(np.maximum(-heights_above(middles[near], other.outside.values())[0], 0.0) @ areas[near]) if len(near) else 0.0
