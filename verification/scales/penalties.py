@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
@@ -53,7 +55,7 @@ def of_first(method: str) -> dict[str, float]:
     alone, both, other = (penalties(method, *parts) for parts in ((first,), (first, second), (second,)))
     risen = penalties(method, first, way=UP)
     return {
-        "open": max(abs(risen[k] / alone[k] - 1.0) for k in range(2)),
+        "open": float(np.max([abs(risen[k] / alone[k] - 1.0) for k in range(2)])),
         "normal": abs(both[0] / alone[0] - 1.0),
         "tangential": abs(both[1] / alone[1] - 1.0),
         "second": abs(other[0] / alone[0] - 1.0),
