@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,9 @@ BEYOND = 0.5 + 1e-9
 
 #: Angle, in radians, between cells beside each other from which on a face has a kink there: round a whole circle it is 0.13 at the most.
 KINK = 0.2
+
+#: A face of less than this share of the largest one's area is a line or a point: the axis of a cylinder, a pole of a ball.
+NO_AREA = 1e-9
 
 
 @frozen
@@ -89,6 +92,12 @@ def cells_of(patch: Patch, faces: Collection[str]) -> dict[str, Cells]:
     """The cells of some faces, by their names."""
     grids = {face: _grid(patch, face) for face in {*faces, *map(opposite, faces)}}
     return {face: _cells(face, grids[face], grids[opposite(face)]) for face in faces}
+
+
+def enclosing(sides: Mapping[str, Cells]) -> dict[str, Cells]:
+    """Those faces that have an area: the others are lines and points, on these or within the body, and tell no way out."""
+    least = NO_AREA * np.max([side.areas.sum() for side in sides.values()])
+    return {face: side for face, side in sides.items() if side.areas.sum() >= least}
 
 
 def _cells(face: str, grid: FloatArray, other: FloatArray) -> Cells:

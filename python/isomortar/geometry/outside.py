@@ -14,8 +14,6 @@ from isomortar.geometry.patch import FloatArray, IntArray
 #: edges the latter does not tell on which side of it the point is. Cells that are twisted leave open 1e-4 of the size, and where edges are
 #: sharper than a right angle 0.2 % of the distance was too little, a twelfth of the size away.
 STRAIGHT = 2e-2
-#: A face of less than this share of the largest one's area is a line or a point: the axis of a cylinder, a pole of a ball.
-NO_AREA = 1e-9
 #: Share of a cell's sides from its middle to its edges: what is farther is nearer to the next one, or beside the face, if there is none.
 HALF = 0.5
 
@@ -30,7 +28,7 @@ def heights_above(points: FloatArray, sides: Collection[Cells]) -> tuple[FloatAr
     ----------
     points : ndarray, shape (n, 3)
     sides : collection of Cells
-        Of the faces.
+        Of the faces, all with an area (`faces.enclosing`).
 
     Returns
     -------
@@ -38,13 +36,11 @@ def heights_above(points: FloatArray, sides: Collection[Cells]) -> tuple[FloatAr
         Distances from the nearest places; those within the body are negative.
     normals : ndarray, shape (n, 3)
     """
-    least = NO_AREA * np.max([side.areas.sum() for side in sides])
-    bounding = [side for side in sides if side.areas.sum() >= least]  # the others are lines and points within the body
-    bounds = np.stack([_bounds(points, side) for side in bounding])
+    bounds = np.stack([_bounds(points, side) for side in sides])
     order, scores = np.argsort(bounds, axis=0), np.full(len(points), np.inf)
     arms, normals = np.zeros((len(points), 3)), np.zeros((len(points), 3))
     for rank in order:  # the likeliest face first: most of the others are farther than the place that is found there
-        for number, side in enumerate(bounding):
+        for number, side in enumerate(sides):
             those = np.flatnonzero((rank == number) & (bounds[number] ** 2 <= scores * (1.0 + STRAIGHT)))
             if len(those):
                 further, out = _from(points[those], side)

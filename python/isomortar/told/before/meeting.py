@@ -69,7 +69,7 @@ def deepest(points: FloatArray, body: Body, least: float) -> float:
         return 0.0
     depths = -heights_above(points, body.outside.values())[0]
     order = np.argsort(-depths, kind="stable")[: min(LOOKED, np.count_nonzero(depths > least))]
-    outside = triangles(body.patch, body.outer) if len(order) else np.zeros((0, 3, 3))
+    outside = triangles(body.patch, body.outside) if len(order) else np.zeros((0, 3, 3))
     return next((float(depths[k]) for k in order if turns(outside, points[k]) > HALF_ROUND), 0.0)
 
 

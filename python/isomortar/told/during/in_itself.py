@@ -62,16 +62,16 @@ def _in_itself(body: Body, before: Body) -> FloatArray | None:
     places = _come_near(body, before)
     if not len(places):
         return None
-    outside = triangles(body.patch, body.outer)
+    outside = triangles(body.patch, body.outside)
     return next((place for place in places if turns(outside, place) > TWICE), None)
 
 
 def _come_near(body: Body, before: Body) -> FloatArray:
     """Places a little below those of a body's outside that are near others which were far from them."""
-    every = spread(sum(len(side.areas) for side in body.outside.values()), SOME)
-    points, normals, areas, first = (
-        _some(of, name, every) for of, name in ((body, "centres"), (body, "normals"), (body, "areas"), (before, "centres"))
-    )
+    faces = [face for face in body.outside if face in before.outside]
+    every = spread(sum(len(body.outside[face].areas) for face in faces), SOME)
+    points, normals, areas = (_some(body, faces, name, every) for name in ("centres", "normals", "areas"))
+    first = _some(before, faces, "centres", every)
     now, then = _squares(points), _squares(first)
     near = np.flatnonzero(np.any((now < LEFT**2 * then) & (now < NEAR**2 * every * areas[:, None]), axis=1))
     near = near[:: max(1, len(near) // PLACES)]
@@ -79,9 +79,9 @@ def _come_near(body: Body, before: Body) -> FloatArray:
     return np.asarray(points[near] - deep * normals[near])
 
 
-def _some(body: Body, name: str, every: int) -> FloatArray:
+def _some(body: Body, faces: Sequence[str], name: str, every: int) -> FloatArray:
     """Of every so manyth cell of a body's outside."""
-    return np.concatenate([getattr(side, name) for side in body.outside.values()])[::every]
+    return np.concatenate([getattr(body.outside[face], name) for face in faces])[::every]
 
 
 def _squares(points: FloatArray) -> FloatArray:

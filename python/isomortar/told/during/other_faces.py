@@ -49,8 +49,8 @@ class OtherFaces:
                 continue
             one, other = (bodies[name] for name in names)
             depths = _depths(one, other, touching)
-            deepest = max(depths.values(), default=0.0)
-            face = next((face for face, depth in depths.items() if depth > ALIKE * deepest), "")
+            most = max(depths.values(), default=0.0)
+            face = next((face for face, depth in depths.items() if depth > ALIKE * most), "")
             if face:
                 self._told.add(names)
                 yield (
@@ -68,7 +68,7 @@ def _depths(one: Body, other: Body, touching: set[str]) -> Mapping[str, float]:
     deep = {face: depth for face, depth in found.items() if depth > 0.0}
     if not deep:
         return {}
-    held = max(_volume(one.outside[face], other) for face in touching)
+    held = max((_volume(one.outside[face], other) for face in touching if face in one.outside), default=0.0)
     return {face: depth for face, depth in deep.items() if _volume(one.outside[face], other) > MORE * held}
 
 
