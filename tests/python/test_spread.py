@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from isomortar.geometry.faces import CELLS, spread
+from isomortar.geometry.faces import spread
+from isomortar.geometry.grids import CELLS
 
 
 @pytest.mark.parametrize("count", [1, 300, 13824, 48 * 4 * 1000, 48 * 4 * 5000 + 2 * 48 * 48])

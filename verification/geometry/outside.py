@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 from geometry.bodies import BODIES, Built
 
-from isomortar.geometry.faces import cells, enclosing
-from isomortar.geometry.outside import heights_above
+from isomortar.geometry.outside import Outside
 from isomortar.geometry.patch import FACES, FloatArray, Patch
 from isomortar.geometry.primitives import box
 from isomortar.harness import Bound, case
@@ -27,8 +26,7 @@ BOXES = {"cube": (1.0, 1.0, 1.0), "plate": (20.0, 15.0, 0.2), "bar": (0.1, 10.0,
 
 def heights(patch: Patch, closed: str, points: FloatArray) -> FloatArray:
     """Of points above the faces of a body."""
-    sides = enclosing({face: cells(patch, face) for face in FACES if face[0] not in closed})
-    return heights_above(points, sides.values())[0]
+    return Outside.of(patch, [face for face in FACES if face[0] not in closed]).heights(points)[0]
 
 
 @case(

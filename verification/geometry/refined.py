@@ -10,7 +10,8 @@ from rational_functions import shares
 from scipy.interpolate import BSpline
 
 from isomortar.errors import InputError
-from isomortar.geometry.faces import CELLS, cells
+from isomortar.geometry.faces import cells
+from isomortar.geometry.grids import CELLS
 from isomortar.geometry.halves import upper_half
 from isomortar.geometry.patch import FACES, Direction, FloatArray, Patch
 from isomortar.geometry.primitives import box

@@ -11,7 +11,7 @@ from isomortar.geometry.primitives import box, sphere
 from isomortar.geometry.refinement import mesh
 from isomortar.harness import Bound, case
 from isomortar.model.entities import Body, Material
-from isomortar.told.before.meeting import deepest, depth, meet
+from isomortar.told.meeting import depth, meet
 
 #: Pairs that are drawn; those that are nearer to touching than cells are long are not looked at.
 PAIRS, CLEAR = 24, 0.04
@@ -141,8 +141,8 @@ def by_needles() -> dict[str, float]:
     shares = np.random.default_rng(9).random((ROUND, 3)) * 1.6 - 0.3
     apart = 1.0 / np.linalg.norm(np.cross(lean[[1, 2, 0]], lean[[2, 0, 1]]), axis=1)
     deep = np.min(np.minimum(shares, 1.0 - shares) * apart, axis=1)
-    found = np.array([deepest(point[None], body, 0.0) for point in shares @ lean])
+    found = np.array([body.outside.deepest(point[None], 0.0) for point in shares @ lean])
     return {
         "others": float(np.count_nonzero((found > 0.0) != (deep > 0.0))),
-        "off": abs(deepest(shares @ lean, body, 0.0) - float(deep.max())) / float(np.ptp(lean)),
+        "off": abs(body.outside.deepest(shares @ lean, 0.0) - float(deep.max())) / float(np.ptp(lean)),
     }

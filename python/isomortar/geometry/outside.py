@@ -1,113 +1,81 @@
-"""How high points are above a body, below zero within it: by the nearest places on cells of its faces."""
+"""The outside of a body: how high points are above it, which of them are in it, and how deep."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from functools import cached_property
 
 import numpy as np
 
-from isomortar.geometry.faces import Cells
-from isomortar.geometry.nearest import nearest
-from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar._frozen import frozen
+from isomortar.geometry.faces import Cells, cells_of
+from isomortar.geometry.grids import grid
+from isomortar.geometry.heights import heights_above
+from isomortar.geometry.patch import FloatArray, Patch
 
-#: Share of a square of a distance by which a cell that a point is straight above is nearer than one that it is beside of, as far away: at
-#: edges the latter does not tell on which side of it the point is. Cells that are twisted leave open 1e-4 of the size, and where edges are
-#: sharper than a right angle 0.2 % of the distance was too little, a twelfth of the size away.
-STRAIGHT = 2e-2
-#: Share of a cell's sides from its middle to its edges: what is farther is nearer to the next one, or beside the face, if there is none.
-HALF = 0.5
+#: A face of less than this share of the largest one's area is a line or a point: the axis of a cylinder, a pole of a ball.
+NO_AREA = 1e-9
+#: Points that are looked at of those that seem to be in a body, the deepest first; of sharp corners some dozens seem to be, and are not.
+LOOKED = 60
+#: How often the outside goes round a place from which on that is within, halfway between never and once.
+HALF_ROUND = 0.5
 
 
-def heights_above(points: FloatArray, sides: Collection[Cells]) -> tuple[FloatArray, FloatArray]:
-    """How high points are above all of some faces, that enclose a body, and the outward normals of the cells that are nearest.
-
-    Where three faces meet in a sharp corner, or a body is folded closer than its cells are long, the side may be the other one: `turns`
-    tells which it is.
+@frozen
+class Outside:
+    """Faces that enclose a body.
 
     Parameters
     ----------
-    points : ndarray, shape (n, 3)
-    sides : collection of Cells
-        Of the faces, all with an area (`faces.enclosing`).
-
-    Returns
-    -------
-    heights : ndarray, shape (n,)
-        Distances from the nearest places; those within the body are negative.
-    normals : ndarray, shape (n, 3)
+    patch : Patch
+    sides : mapping of str to Cells
+        Cells of faces that have an area, by the faces' names: others are lines and points, on these or within the body, and tell no way
+        out.
     """
-    bounds = np.stack([_bounds(points, side) for side in sides])
-    order, scores = np.argsort(bounds, axis=0), np.full(len(points), np.inf)
-    arms, normals = np.zeros((len(points), 3)), np.zeros((len(points), 3))
-    for rank in order:  # the likeliest face first: most of the others are farther than the place that is found there
-        for number, side in enumerate(sides):
-            those = np.flatnonzero((rank == number) & (bounds[number] ** 2 <= scores * (1.0 + STRAIGHT)))
-            if len(those):
-                further, out = _from(points[those], side)
-                found = _scores(further, out)
-                nearer = found < scores[those]
-                those = those[nearer]
-                scores[those], arms[those], normals[those] = found[nearer], further[nearer], out[nearer]
-    return np.copysign(np.linalg.norm(arms, axis=1), np.einsum("ij,ij->i", arms, normals)), normals
 
+    patch: Patch
+    sides: Mapping[str, Cells]
 
-def turns(outside: FloatArray, place: FloatArray) -> float:
-    """How often a closed surface of triangles, (n, 3, 3), goes round a place (van Oosterom and Strackee 1983): once, if that is within."""
-    a, b, c = np.moveaxis(outside - place, 1, 0)
-    x, y, z = (np.linalg.norm(of, axis=1) for of in (a, b, c))
-    volume = np.einsum("ij,ij->i", a, np.cross(b, c))
-    rest = x * y * z + np.einsum("ij,ij->i", a, b) * z + np.einsum("ij,ij->i", b, c) * x + np.einsum("ij,ij->i", c, a) * y
-    return float(np.arctan2(volume, rest).sum()) / (2.0 * np.pi)
+    @classmethod
+    def of(cls, patch: Patch, faces: Collection[str]) -> Outside:
+        """By the names of all faces at which a body does not meet itself."""
+        sides = cells_of(patch, faces)
+        least = NO_AREA * np.max([side.areas.sum() for side in sides.values()])
+        return cls(patch, {face: side for face, side in sides.items() if side.areas.sum() >= least})
 
+    @property
+    def sagitta(self) -> float:
+        """How far the faces are from their cells at most, about, but for kinks."""
+        return float(np.max([side.sagitta for side in self.sides.values()]))
 
-def _bounds(points: FloatArray, side: Cells) -> FloatArray:
-    """Distances of points from the box round a face, which no place of it is nearer than."""
-    reach = np.abs(side.sides).sum(axis=1) * HALF
-    low, high = (side.centres - reach).min(axis=0), (side.centres + reach).max(axis=0)
-    return np.asarray(np.linalg.norm(np.maximum(np.maximum(low - points, points - high), 0.0), axis=1))
+    @cached_property
+    def triangles(self) -> FloatArray:
+        """Corners of two triangles for each cell, shape (2 n, 3, 3), seen from out of the body counter-clockwise."""
+        found = []
+        for face in self.sides:
+            points = grid(self.patch, face)
+            if face[1] == "1":
+                points = points[::-1]
+            a, b, c, d = (part.reshape(-1, 3) for part in (points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]))
+            found += [np.stack([a, c, b], axis=1), np.stack([a, d, c], axis=1)]
+        return np.concatenate(found)
 
+    def heights(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """How high points, (n, 3), are above it, and the outward normals nearest to them; which side is told may be wrong (`deepest`)."""
+        return heights_above(points, self.sides.values())
 
-def _from(points: FloatArray, side: Cells) -> tuple[FloatArray, FloatArray]:
-    """Ways to points from the nearest places of a face, and its normals there; by steps from the nearest middle of a cell."""
-    at = nearest(points, side.centres)
-    arms, steps = _reached(points, side, at)
-    moving = np.flatnonzero(steps.any(axis=0))
-    while len(moving):
-        there = np.clip(np.stack(np.unravel_index(at[moving], side.shape)) + steps[:, moving], 0, np.array(side.shape)[:, None] - 1)
-        tried = np.ravel_multi_index(tuple(there), side.shape)
-        further, onwards = _reached(points[moving], side, tried)
-        nearer = _scores(further, side.normals[tried]) < _scores(arms[moving], side.normals[at[moving]])
-        those = moving[nearer]
-        at[those], arms[those], steps[:, those] = tried[nearer], further[nearer], onwards[:, nearer]
-        steps[:, moving[~nearer]] = np.fix(0.5 * steps[:, moving[~nearer]])
-        moving = moving[steps[:, moving].any(axis=0)]
-    return arms, side.normals[at]
+    def turns(self, place: FloatArray) -> float:
+        """How often it goes round a place (van Oosterom and Strackee 1983): once, if that is within."""
+        a, b, c = np.moveaxis(self.triangles - place, 1, 0)
+        x, y, z = (np.linalg.norm(of, axis=1) for of in (a, b, c))
+        volume = np.einsum("ij,ij->i", a, np.cross(b, c))
+        rest = x * y * z + np.einsum("ij,ij->i", a, b) * z + np.einsum("ij,ij->i", b, c) * x + np.einsum("ij,ij->i", c, a) * y
+        return float(np.arctan2(volume, rest).sum()) / (2.0 * np.pi)
 
-
-def _reached(points: FloatArray, side: Cells, numbers: IntArray) -> tuple[FloatArray, IntArray]:
-    """Ways to points from the nearest places of cells, shape (n, 3), and how many cells on they are beyond these, shape (2, n)."""
-    arms, ways = points - side.centres[numbers], side.ways(numbers, points - side.centres[numbers])
-    cell = side.sides[numbers]
-    places = np.zeros((5, 2, len(numbers)))
-    places[0] = ways  # straight above, or else on one of the edges
-    for edge, (axis, end) in enumerate([(0, -HALF), (0, HALF), (1, -HALF), (1, HALF)], start=1):
-        places[edge, axis] = end
-        places[edge, 1 - axis] = _share(arms - end * cell[:, axis], cell[:, 1 - axis])
-    there = np.clip(places, -HALF, HALF)
-    further = arms - np.einsum("ean,nai->eni", there, cell)
-    squares = np.einsum("eni,eni->en", further, further)
-    squares[0, np.any(there[0] != ways, axis=0)] = np.inf
-    best, each = np.argmin(squares, axis=0), np.arange(len(numbers))
-    on_edge = places[best, :, each].T
-    return further[best, each], np.rint(np.where(np.abs(on_edge) == HALF, ways, on_edge)).astype(np.int64)
-
-
-def _share(arms: FloatArray, of: FloatArray) -> FloatArray:
-    squares = np.einsum("ij,ij->i", of, of)
-    return np.divide(np.einsum("ij,ij->i", arms, of), squares, out=np.zeros(len(arms)), where=squares > 0.0)
-
-
-def _scores(arms: FloatArray, normals: FloatArray) -> FloatArray:
-    """Squares of distances, less a share of those straight above."""
-    above = np.einsum("...j,...j->...", arms, normals)
-    return np.asarray(np.einsum("...j,...j->...", arms, arms) - STRAIGHT * above * above)
+    def deepest(self, points: FloatArray, least: float) -> float:
+        """How deep the deepest of some points, (n, 3), is in the body, that it goes round; 0 if by no more than the least."""
+        if not len(points):
+            return 0.0
+        depths = -self.heights(points)[0]
+        order = np.argsort(-depths, kind="stable")[: min(LOOKED, np.count_nonzero(depths > least))]
+        return next((float(depths[k]) for k in order if self.turns(points[k]) > HALF_ROUND), 0.0)

@@ -12,7 +12,7 @@ from pydantic import Field
 
 from isomortar._arrays import FRICTION_LAWS, LAWS, NO_FRICTION, FrictionArrays, MaterialArrays, MaterialLaw
 from isomortar._frozen import frozen
-from isomortar.geometry.faces import Cells, cells_of, enclosing
+from isomortar.geometry.outside import Outside
 from isomortar.geometry.patch import FACES, Closed, FloatArray, Patch
 from isomortar.model.settings import SolverSettings
 from isomortar.model.values import TABLE, Point, Positive, Real
@@ -111,9 +111,9 @@ class Body:
         return float(np.ptp(self.patch.control_points, axis=0).max())
 
     @cached_property
-    def outside(self) -> dict[str, Cells]:
-        """Cells of its outer faces that have an area, by the faces' names."""
-        return enclosing(cells_of(self.patch, self.outer))
+    def outside(self) -> Outside:
+        """What encloses it: all outer faces that have an area."""
+        return Outside.of(self.patch, self.outer)
 
 
 #: What one face of a body is, two that meet, and three.

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from isomortar.geometry.faces import cells, edges
+from isomortar.geometry.faces import cells
+from isomortar.geometry.grids import edges
 from isomortar.geometry.nearest import nearest
 from isomortar.geometry.patch import IntArray
 from isomortar.model.entities import Contact, Face, Problem

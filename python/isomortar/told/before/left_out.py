@@ -11,7 +11,7 @@ from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.model.constants import SAME_POINT
 from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.glue import names_together
-from isomortar.told.before.meeting import meet
+from isomortar.told.meeting import meet
 
 
 def of_what_is_left_out(problem: Problem) -> Iterator[str]:

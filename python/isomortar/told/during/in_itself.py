@@ -6,9 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from isomortar.geometry.faces import spread, triangles
+from isomortar.geometry.faces import spread
 from isomortar.geometry.nearest import product
-from isomortar.geometry.outside import turns
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Body, Problem
@@ -59,17 +58,13 @@ class InItself:
 
 def _in_itself(body: Body, before: Body) -> FloatArray | None:
     """A place in a body that is in it by more than the part below whose outside it is; None if there is none."""
-    places = _come_near(body, before)
-    if not len(places):
-        return None
-    outside = triangles(body.patch, body.outside)
-    return next((place for place in places if turns(outside, place) > TWICE), None)
+    return next((place for place in _come_near(body, before) if body.outside.turns(place) > TWICE), None)
 
 
 def _come_near(body: Body, before: Body) -> FloatArray:
     """Places a little below those of a body's outside that are near others which were far from them."""
-    faces = [face for face in body.outside if face in before.outside]
-    every = spread(sum(len(body.outside[face].areas) for face in faces), SOME)
+    faces = [face for face in body.outside.sides if face in before.outside.sides]
+    every = spread(sum(len(body.outside.sides[face].areas) for face in faces), SOME)
     points, normals, areas = (_some(body, faces, name, every) for name in ("centres", "normals", "areas"))
     first = _some(before, faces, "centres", every)
     now, then = _squares(points), _squares(first)
@@ -81,7 +76,7 @@ def _come_near(body: Body, before: Body) -> FloatArray:
 
 def _some(body: Body, faces: Sequence[str], name: str, every: int) -> FloatArray:
     """Of every so manyth cell of a body's outside."""
-    return np.concatenate([getattr(body.outside[face], name) for face in faces])[::every]
+    return np.concatenate([getattr(body.outside.sides[face], name) for face in faces])[::every]
 
 
 def _squares(points: FloatArray) -> FloatArray:

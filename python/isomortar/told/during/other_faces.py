@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from isomortar.geometry.faces import Cells
-from isomortar.geometry.outside import heights_above
+from isomortar.geometry.faces import Cells, spread
+from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Body, Face, Problem
-from isomortar.told.before.meeting import deepest, in_box, least_depth
+from isomortar.told.meeting import in_box, least_depth
 
 #: Volume in the other body over that of a face in contact from which on a face is told: with one flank of a wedge in contact the other one
 #: had 2.3 to 23 times as much, its ends, where edges that are in contact come in by as much as their elements do not see, up to 0.05.
@@ -17,9 +17,8 @@ MORE = 2.0
 #: Depth over the largest one from which on faces are as deep as each other, and the first is told: those that mirror each other differ by
 #: what Newton's method leaves.
 ALIKE = 1.0 - 1e-5
-#: Of the cells of a face, row by row, every so manyth one is looked at: 7 goes into none of their usual numbers, so that these are spread
-#: over the face, and some hundreds of them do for a volume.
-EVERY = 7
+#: Cells of a face that are looked at, about as many, spread over it: so many do for a volume, of which a factor of two is asked.
+SOME = 320
 
 
 class OtherFaces:
@@ -63,17 +62,22 @@ class OtherFaces:
 def _depths(one: Body, other: Body, touching: set[str]) -> Mapping[str, float]:
     """How deep faces of a body without contact are in another one, of those that are in it by more than others in contact are."""
     least = least_depth(one, other)
-    free = {face: side.centres[::EVERY] for face, side in one.outside.items() if face not in touching}
-    found = {face: deepest(points[in_box(points, other, -least)], other, least) for face, points in free.items()}
+    free = {face: _some(side) for face, side in one.outside.sides.items() if face not in touching}
+    found = {face: other.outside.deepest(points[in_box(points, other, -least)], least) for face, (points, _) in free.items()}
     deep = {face: depth for face, depth in found.items() if depth > 0.0}
     if not deep:
         return {}
-    held = max((_volume(one.outside[face], other) for face in touching if face in one.outside), default=0.0)
-    return {face: depth for face, depth in deep.items() if _volume(one.outside[face], other) > MORE * held}
+    held = max((_volume(*_some(side), other) for face, side in one.outside.sides.items() if face in touching), default=0.0)
+    return {face: depth for face, depth in deep.items() if _volume(*free[face], other) > MORE * held}
 
 
-def _volume(side: Cells, other: Body) -> float:
-    """Volume between a face in another body and what it came through, by some cells."""
-    middles, areas = side.centres[::EVERY], side.areas[::EVERY]
+def _some(side: Cells) -> tuple[FloatArray, FloatArray]:
+    """Middles of some cells of a face, and the areas that they stand for."""
+    every = spread(len(side.areas), SOME)
+    return side.centres[::every], every * side.areas[::every]
+
+
+def _volume(middles: FloatArray, areas: FloatArray, other: Body) -> float:
+    """Volume between a face in another body and what it came through, by some places and the areas that they stand for."""
     near = in_box(middles, other, 0.0)
-    return float(np.maximum(-heights_above(middles[near], other.outside.values())[0], 0.0) @ areas[near]) if len(near) else 0.0
+    return float(np.maximum(-other.outside.heights(middles[near])[0], 0.0) @ areas[near]) if len(near) else 0.0

@@ -7,7 +7,7 @@ from functools import cached_property
 
 from isomortar.model.entities import Body, Problem
 from isomortar.told.before.left_out import unrelated, without_contact
-from isomortar.told.before.meeting import depth, least_depth
+from isomortar.told.meeting import depth, least_depth
 
 
 class Passing:

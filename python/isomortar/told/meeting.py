@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from isomortar.geometry.faces import spread, triangles
-from isomortar.geometry.outside import heights_above, turns
+from isomortar.geometry.faces import spread
 from isomortar.geometry.patch import FloatArray
 from isomortar.model.constants import NO_PART
 from isomortar.model.contrasts import element_lengths
@@ -21,10 +20,6 @@ SOME = 1500
 #: Shares of the way from where a body meets another one to where it begins, at which others may be between: seven places, so that layers
 #: as thin as an eighth of the way are found.
 PLACES = tuple(k / 8 for k in range(1, 8))
-#: Points that are looked at of those that seem to be in a body, the deepest first; of sharp corners some dozens seem to be, and are not.
-LOOKED = 60
-#: How often the outside goes round a place from which on that is within, halfway between never and once.
-HALF_ROUND = 0.5
 #: Depth over the thickness of the thinner body from which on bodies are in each other: what contacts leave open is below it.
 PASSED = 0.01
 
@@ -41,11 +36,11 @@ def _is_at(one: Body, other: Body, way: FloatArray, size: float, between: Sequen
     points, normals = _middles(one, other, way, NO_PART * size)
     if not len(points):
         return False
-    above, out = heights_above(points, other.outside.values())
+    above, out = other.outside.heights(points)
     touches = (np.einsum("ij,ij->i", normals, out) < FACING) & (np.abs(above) < NO_PART * size)
     within = above < -NO_PART * size
     came = ~_through(points, way, size, between if (touches | within).any() else ())
-    return bool((touches & came).any()) or deepest(points[within & came], other, NO_PART * size) > 0.0
+    return bool((touches & came).any()) or other.outside.deepest(points[within & came], NO_PART * size) > 0.0
 
 
 def _through(points: FloatArray, way: FloatArray, size: float, between: Sequence[Body]) -> BoolArray:
@@ -53,36 +48,25 @@ def _through(points: FloatArray, way: FloatArray, size: float, between: Sequence
     through = np.zeros(len(points), dtype=np.bool_)
     for share in PLACES if np.any(way) else ():
         for body in between:
-            through |= heights_above(points - share * way, body.outside.values())[0] < -NO_PART * size
+            through |= body.outside.heights(points - share * way)[0] < -NO_PART * size
     return through
 
 
 def depth(one: Body, other: Body, least: float) -> float:
     """By how much parts of the outside of one body are in another one at most, or the other way round; 0 if by no more than the least."""
     still = np.zeros(3)
-    return max(deepest(_middles(*bodies, still, -least)[0], bodies[1], least) for bodies in ((one, other), (other, one)))
-
-
-def deepest(points: FloatArray, body: Body, least: float) -> float:
-    """How deep the deepest of some points is in a body, that its outside goes round; 0 if by no more than the least."""
-    if not len(points):
-        return 0.0
-    depths = -heights_above(points, body.outside.values())[0]
-    order = np.argsort(-depths, kind="stable")[: min(LOOKED, np.count_nonzero(depths > least))]
-    outside = triangles(body.patch, body.outside) if len(order) else np.zeros((0, 3, 3))
-    return next((float(depths[k]) for k in order if turns(outside, points[k]) > HALF_ROUND), 0.0)
+    return max(into.outside.deepest(_middles(of, into, still, -least)[0], least) for of, into in ((one, other), (other, one)))
 
 
 def least_depth(one: Body, other: Body) -> float:
     """Depth from which on bodies are in each other: above what flat cells are off their faces, and a share of the thinner one."""
-    flat = [float(np.max([side.sagitta for side in body.outside.values()])) for body in (one, other)]
     thin = [float(lengths.sum()) for body in (one, other) for lengths in element_lengths(body.patch)]
-    return 2.0 * sum(flat) + PASSED * min(thin)
+    return 2.0 * (one.outside.sagitta + other.outside.sagitta) + PASSED * min(thin)
 
 
 def _middles(one: Body, other: Body, way: FloatArray, margin: float) -> tuple[FloatArray, FloatArray]:
     """Middles of some cells of a body that has gone some way, and their normals: of those in the box round another one."""
-    sides = one.outside.values()
+    sides = one.outside.sides.values()
     points, normals = np.concatenate([side.centres for side in sides]) + way, np.concatenate([side.normals for side in sides])
     found = in_box(points, other, margin)
     found = found[:: spread(len(found), SOME)]
