@@ -24,7 +24,7 @@ from told.dents import scene as at_points
 from told.given_up import all_told, without_digits
 from told.held_inside import ON_EDGE as HELD_INSIDE
 from told.in_itself import STRIP, wound
-from told.long_masters import CAP
+from told.long_elements import CAP
 from told.mirrored import of_half
 from told.narrow import BALL, BALLS, STRIPS, depth, strip
 from told.other_faces import INTO_A_WALL

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from told.long_masters import CYLINDER
+from told.long_elements import CYLINDER
 from told.narrow import STRIP
 from told.runs import Heard
 

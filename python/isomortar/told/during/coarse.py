@@ -14,14 +14,14 @@ from isomortar.told.borne import Borne
 from isomortar.told.during.between_points import between_points
 from isomortar.told.during.beyond_edges import beyond_edges
 from isomortar.told.during.giving_way import Yields, giving_way
-from isomortar.told.during.long_masters import long_master
+from isomortar.told.during.long_elements import long_elements
 from isomortar.told.during.narrow import areas, bearing
 from isomortar.told.during.softness import pressed_in
 
 #: Share of the largest force of a contact below which it opens, or hardly begins: its last row is no fault of the mesh.
 LIGHT = 0.1
 #: What looks for what may be wrong with a mesh; the first that finds something tells.
-LOOKS = (bearing, between_points, beyond_edges, long_master)
+LOOKS = (bearing, between_points, beyond_edges, long_elements)
 
 
 class Coarse:

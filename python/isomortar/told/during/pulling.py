@@ -6,14 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from isomortar import _bindings
-from isomortar._bindings import Response
-from isomortar._codes import PointState
-from isomortar.geometry.patch import FloatArray
 from isomortar.model.entities import Contact, RigidPlane
-from isomortar.model.pairs import Pair
 from isomortar.solve.equilibrium import Balance, Equilibrium
-from isomortar.solve.feet import point_by_point
+from isomortar.told.during.normal_forces import normal_forces
 
 #: Share of a contact's normal forces that may pull: beside an edge the normals of both sides can be a right angle apart.
 PULLING = 0.1
@@ -34,49 +29,16 @@ class Pulling:
         for number, contact in enumerate(self._equilibrium.problem.contacts):
             if contact.name not in self._told and pulls(self._equilibrium, balance, number):
                 self._told.add(contact.name)
-                on_slave, outward = _normal_forces(self._equilibrium, balance, number)
+                on_slave, outward = normal_forces(self._equilibrium, balance, number)
                 whole = np.linalg.norm(on_slave, axis=1).sum() * len(outward)
                 yield _sentence(contact, step, bool(on_slave.sum(axis=0) @ outward.sum(axis=0) < -ROLLED * whole))
 
 
 def pulls(equilibrium: Equilibrium, balance: Balance, number: int) -> bool:
     """Whether normal forces of a contact act out of its slave's body."""
-    on_slave, outward = _normal_forces(equilibrium, balance, number)
+    on_slave, outward = normal_forces(equilibrium, balance, number)
     out = np.einsum("ij,ij->i", on_slave, outward)
     return bool(np.maximum(out, 0.0).sum() > PULLING * np.linalg.norm(on_slave, axis=1).sum())
-
-
-def _normal_forces(equilibrium: Equilibrium, balance: Balance, number: int) -> tuple[FloatArray, FloatArray]:
-    """Normal forces of a contact on its slave's quadrature points and unit normals out of its body there, each shape (points, 3).
-
-    They are looked at point by point, the pressure there as if it pressed: what functions of both signs make of it at control points,
-    and a field of theirs below zero, tell nothing of where the slave's face looks.
-    """
-    pair, response = equilibrium.pairs[number].pair, balance.responses[number]
-    outward = _outward(pair, balance.positions)
-    if not np.any(response.state):
-        return np.zeros_like(outward), outward
-    slave, everywhere = point_by_point(pair, balance.positions)
-    loads = pair.slave.area * np.abs(pair.field(response.pressure))
-    forces = np.zeros_like(everywhere)  # without friction, whose part along the slave's own normal has any sign
-    _bindings.contact_forces(slave, pair.master, everywhere, balance.kinematics[number].projections, _pressing(loads), forces)
-    return -forces[slave.point], outward
-
-
-def _pressing(loads: FloatArray) -> Response:
-    """What presses with some loads and rubs nowhere."""
-    count = len(loads)
-    states = np.full(count, PointState.STICK, dtype=np.int32)
-    return Response(loads, np.zeros((count, 2)), states, np.zeros(count), np.zeros((count, 6, 2)), np.zeros((count, 2)))
-
-
-def _outward(pair: Pair, positions: FloatArray) -> FloatArray:
-    """Unit normals of a pair's slave at its quadrature points, out of its body, shape (points, 3); zero where it has none."""
-    nodes = positions[pair.slave.point[np.repeat(pair.slave.shape.nodes, pair.slave.per_element, axis=0)]]
-    first, second = np.einsum("qka,qai->kqi", pair.slave.slopes, nodes)
-    across = pair.slave.outward * np.cross(first, second)
-    length = np.linalg.norm(across, axis=1, keepdims=True)
-    return np.divide(across, length, out=np.zeros_like(across), where=length > 0.0)
 
 
 def _sentence(contact: Contact, step: int, rolled: bool) -> str:

@@ -42,6 +42,12 @@ def raised_body(body: Body, along: Sequence[int], more: Finer) -> Body:
 
 def raised(patch: Patch, along: int, more: Finer) -> tuple[FloatArray, Patch]:
     """What control values along a direction become if that is finer, and the finer patch; where elements meet it is as smooth as it was."""
+    bounds = patch.directions[along].boundaries
+    return finer(patch, along, more.orders, 0.5 * (bounds[1:] + bounds[:-1]) if more.halves else bounds[:0])
+
+
+def finer(patch: Patch, along: int, orders: int, cuts: FloatArray) -> tuple[FloatArray, Patch]:
+    """The same of a direction that is of so many orders more, and whose elements are cut at some parameters."""
     direction = patch.directions[along]
     matrix: FloatArray = np.eye(direction.count)
     if direction.family == "L":
@@ -49,11 +55,11 @@ def raised(patch: Patch, along: int, more: Finer) -> tuple[FloatArray, Patch]:
         knots = np.repeat(direction.boundaries, direction.order)
         direction = Direction("N", direction.order, np.concatenate([knots[:1], knots, knots[-1:]]))
         matrix = np.asarray(np.linalg.inv(Spline([direction], matrix).evaluate(nodes[:, None])))
-    for _ in range(more.orders):
+    for _ in range(orders):
         direction, matrix = elevated(direction, matrix, 0)
-    if more.halves:
+    if len(cuts):
         spline = Spline([direction], matrix)
-        spline.insert(0, 0.5 * (direction.boundaries[1:] + direction.boundaries[:-1]))
+        spline.insert(0, cuts)
         direction, matrix = Direction("N", direction.order, spline.knots[0]), spline.control_points
     grid = along_axis(matrix, homogeneous(patch), along)
     u, v, w = (direction if axis == along else own for axis, own in enumerate(patch.directions))

@@ -15,11 +15,10 @@ from isomortar.model.shares import percent
 from isomortar.solve.contact import PairMechanics, PutOff
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.feet import slave_points
+from isomortar.told.during.extent import WIDE
 from isomortar.told.during.pivoting import slip_vectors
 from isomortar.told.during.softness import pressed_in
 
-#: Standard deviations of its force, in length, that a contact is wide: of an even pressure 3.5, of that of cylinders on blocks 4.0.
-WIDE = 4.0
 #: Widths that contact has to go along its slave before it is told: until then friction builds up by what has not rolled, too.
 ROLLED = 1.0
 #: Widths that it has to go in a load step for rolling to begin: a cylinder that is pressed on its own elements moves by less.

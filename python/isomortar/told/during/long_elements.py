@@ -1,0 +1,171 @@
+"""Elements that are too long for a contact, its slave's or its master's: they cannot follow what is pressed in, and are too stiff."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from isomortar._frozen import frozen
+from isomortar.geometry.patch import FloatArray
+from isomortar.model.contrasts import element_lengths
+from isomortar.model.entities import Contact, Face, Problem
+from isomortar.model.sheet import Sheet
+from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.told.during.extent import extent
+from isomortar.told.during.giving_way import Yields
+from isomortar.told.during.indenting import coordinates_of_slave, further
+from isomortar.told.during.pulling import pulls
+from isomortar.told.during.softness import softness
+
+#: Share of what a body gives way by that its elements keep back, by one over the width of contact in these, and what is taken from that:
+#: fitted to balls and cylinders on blocks of orders 1 to 3; and the most that it is taken for.
+KEEPS, FREE, MOST = 0.2, 0.4, 0.8
+#: Order from which on elements follow shorter pressures in proportion.
+SMOOTH = 2.0
+#: The same across, by one over the width of contact in heights of elements, of order 2; of order 1 four times as much: caps on one element
+#: of order 2 across, twice as high as the contact was wide, kept back 0.02 to 0.06.
+ACROSS = 0.06
+#: Share of a face's elements from which on contact is as wide as it: nothing beside it is to be bent down.
+ALL = 0.8
+#: Elements of the master are too long for a finer slave: longer than its own by this factor. Where they are not both are too long.
+FINER = 1.2
+#: Share that elements of both may keep back, by the estimate, from which on it is computed what they do: where it was less forces of balls
+#: on blocks were too large by less than a tenth for it.
+SUSPECT = 0.03
+#: Share of the force that this adds from which on it is told, and the largest that is: under rigid slaves it is a bound of little use.
+COSTS, LARGEST = 0.1, 1.0
+#: A direction is too coarse where it keeps back this share of what the worst one does: along the face, and across.
+PARTS = (0.5, 0.5, 1.0)
+
+
+@frozen
+class Side:
+    """How a contact lies on elements of one of its sides.
+
+    Attributes
+    ----------
+    place : Face
+    letters : tuple of str
+        Of its directions along the face, and across.
+    widths : ndarray, shape (2,)
+        How wide contact is along each coordinate of the face, in elements of that.
+    kept : ndarray, shape (3,)
+        Share of what the body gives way by that elements may keep back along each direction.
+    softness : float
+        Share of the side in what both bodies give way.
+    """
+
+    place: Face
+    letters: tuple[str, str, str]
+    widths: FloatArray
+    kept: FloatArray
+    softness: float
+
+    @property
+    def suspect(self) -> float:
+        """Share of what both bodies give way by that its elements may keep back."""
+        return self.softness * min(MOST, float(np.linalg.norm(self.kept)))
+
+    @property
+    def along(self) -> float:
+        """The same of those along the face alone."""
+        return self.softness * min(MOST, float(np.linalg.norm(self.kept[:2])))
+
+
+@frozen
+class LongElements:
+    """What elements of both sides of a contact keep back.
+
+    Attributes
+    ----------
+    sides : tuple of Side
+        Slave and master, but for a rigid plane.
+    longer : bool
+        Whether the master's elements are longer than the slave's.
+    further : ndarray, shape (sides,)
+        How much further sides would be pressed in by short elements; not a number of what is not known.
+    yields : Yields
+        How far both give way.
+    """
+
+    sides: tuple[Side, ...]
+    longer: bool
+    further: FloatArray
+    yields: Yields
+
+    @property
+    def of_sides(self) -> FloatArray:
+        """Shares of the force that elements of sides add to it, about, shape (sides,) (theory 9.15, 9.26)."""
+        estimates = np.array([side.along if self.longer and side is self.sides[-1] else 0.0 for side in self.sides])
+        pressed = float(self.yields.pressed.sum())
+        known = self.further / pressed if pressed > 0.0 else np.zeros(len(self.sides))
+        alone = np.where(np.isnan(known), estimates / (1.0 - estimates), known)
+        whole = float(alone.sum())
+        return np.asarray(alone * (self.yields.of_force(whole) / whole if whole > 0.0 else 0.0))
+
+    @property
+    def costs(self) -> float:
+        """Share of the force that both add to it, about."""
+        return float(self.of_sides.sum())
+
+    @property
+    def is_told(self) -> bool:
+        """Whether it costs enough to be told."""
+        return self.costs > COSTS
+
+    def sentence(self, problem: Problem, contact: Contact, step: int) -> str:
+        """What is said of it at the end of a load step: of the side that adds more."""
+        worst = int(np.argmax(self.of_sides))
+        side, what = self.sides[worst], ("slave", "master")[worst]
+        stage = problem.stages[problem.stage_of(step)].name
+        few = [letter for letter, kept, part in zip(side.letters, side.kept, PARTS, strict=True) if kept >= part * side.kept.max()]
+        keys = ", ".join(f"bodies.{name}.mesh.elements" for name in dict.fromkeys(face.body for face in side.place.faces))
+        return (
+            f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: elements of its {what} {side.place.words} are "
+            f"too long for it, and too stiff: it is {side.widths[0]:.2g} of them wide along {side.letters[0]} and {side.widths[1]:.2g} "
+            f"along {side.letters[1]}. Forces under given motions may be too large by about {10 * round(10.0 * min(LARGEST, self.costs))} "
+            f"%, or by little, as knots lie there, and pressures by more. Take twice as many elements or more along {' and '.join(few)} "
+            f"({keys}), or shorter ones there (mesh.grading)"
+        )
+
+
+def long_elements(equilibrium: Equilibrium, balance: Balance, number: int, yields: Yields) -> LongElements | None:
+    """How a contact that presses lies on elements of its bodies (theory 9.15, 9.26); None of what pulls."""
+    pair, projections, problem = equilibrium.pairs[number].pair, balance.kinematics[number].projections, equilibrium.problem
+    forces = pair.slave.area * np.maximum(pair.field(balance.responses[number].pressure), 0.0) * (projections.found > 0)
+    if not forces.any() or pulls(equilibrium, balance, number):
+        return None
+    share = forces / forces.sum()
+    soft = np.array([share @ part for part in softness(problem, equilibrium.numbering, pair, projections)])
+    if not soft.any():
+        return None
+    on_faces = (pair.contact.slave, coordinates_of_slave(pair, equilibrium)), (pair.contact.master, projections.xi)
+    places = [(place, at) for place, at in on_faces if isinstance(place, Face)]
+    sides = tuple(_side(problem, *place, share, part) for place, part in zip(places, soft / soft.sum(), strict=False))
+    lengths = [Sheet.of(problem, place).element_size for place, _ in places]
+    longer = problem.images == 1 and lengths[-1] > FINER * lengths[0]
+    suspect = sum(side.suspect for side in sides) > SUSPECT
+    known = further(equilibrium, balance, number, places) if suspect else np.zeros(len(sides))
+    return LongElements(sides, longer, known, yields)
+
+
+def _side(problem: Problem, place: Face, at: FloatArray, share: FloatArray, softness: float) -> Side:
+    """A side of a contact whose force is at some coordinates, by shares of it."""
+    sheet = Sheet.of(problem, place)
+    sides = zip(at.T, sheet.directions, sheet.closed, strict=True)
+    widths = np.array([extent(places, share, d.boundaries, np.arange(d.elements + 1.0), closed)[1] for places, d, closed in sides])
+    narrow = np.divide(1.0, widths, out=np.full(2, np.inf), where=widths > 0.0)
+    narrow[widths > ALL * np.array([direction.elements for direction in sheet.directions])] = 0.0
+    across, order = _across(problem, place, sheet, widths[narrow > 0.0])
+    orders = np.array([direction.order for direction in sheet.directions])
+    keeps = np.append(KEEPS * np.minimum(1.0, SMOOTH / orders), ACROSS * (SMOOTH / order) ** 2)
+    kept = keeps * np.maximum(0.0, np.append(narrow, across) - FREE)
+    return Side(place, (*sheet.letters, place.face[0]), widths, np.minimum(MOST, kept), softness)
+
+
+def _across(problem: Problem, place: Face, sheet: Sheet, widths: FloatArray) -> tuple[float, int]:
+    """How high elements are at a face, in widths of the contact, and their order across; nothing of joined faces, and of wide contact."""
+    patch, axis = problem.body(place.body).patch, "uvw".index(place.face[0])
+    order = patch.directions[axis].order
+    if len(place.faces) > 1 or not len(widths):
+        return 0.0, order
+    return float(element_lengths(patch)[axis][-int(place.face[1])] / (sheet.element_size * widths.min())), order
