@@ -102,6 +102,8 @@ BEAM = RING.replace(
     '"ring", inner = INNER, outer = 1, width = 0.1, axis = "y", angles = [0, ANGLE]', '"box", lower = [0, 0, 0], upper = [2, 0.1, INNER]'
 )
 HELD = BEAM.replace('components = ["z"]', 'components = ["x", "y", "z"]')
+#: A plate as wide as long that is bent by its thickness: the hand holds that where the end turns, and squeezes it there.
+WIDE = BEAM.replace("[2, 0.1, INNER]", "[2, 2, INNER]").replace("-1e-5", "-INNER")
 #: The same with both ends clamped, and a beam of two layers that are glued, of which one is held.
 CLAMPED = RING.replace('components = ["z"]', 'components = ["x", "y", "z"]')
 LAYERS = HELD.replace(
@@ -123,6 +125,7 @@ STIFF: dict[str, tuple[str, float, int, int, int]] = {
     "a quarter that can but stretch": (CLAMPED, 0.98, 90, 2, 2),
     "a quarter of one element of order 3": (RING, 0.98, 90, 3, 1),
     "half a ring of order 3, clamped": (CLAMPED, 0.98, 180, 3, 4),
+    "plate whose end is held in its thickness": (WIDE, 0.04, 0, 2, 2),
     "two layers": (LAYERS, 0.01, 0, 2, 4),
     "two layers of order 1": (LAYERS, 0.01, 0, 1, 32),
 }

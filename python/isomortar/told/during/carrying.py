@@ -11,8 +11,10 @@ from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.refinement import homogeneous
 from isomortar.geometry.splines import Spline
 from isomortar.model.entities import Body, Problem
+from isomortar.model.glue import shared_directions
 from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
+from isomortar.model.supports import BoolArray
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.told.during.acting import Acting
 from isomortar.told.during.raising import Finer, along_axis, raised
@@ -21,18 +23,49 @@ from isomortar.told.during.raising import Finer, along_axis, raised
 STEP = 1e-5
 
 
-def carried(before: Body, acts: Acting, along: Sequence[int], more: Finer) -> FloatArray:
-    """Forces of contact and supports on a body's patch as those on the one of a higher order, but for loads (theory 9.23)."""
+def carried(before: Body, acts: Acting, along: Sequence[int], more: Finer, at_ends: BoolArray) -> FloatArray:
+    """Forces of contact and supports on a body's patch as those on the one of a higher order, but for loads (theory 9.23).
+
+    Parameters
+    ----------
+    before : Body
+    acts : Acting
+    along : sequence of int
+        Numbers of the directions.
+    more : Finer
+    at_ends : ndarray of bool, shape (3, 2, 3)
+        What supports exert that stays at the two ends of each direction, by component: `held_at_ends`.
+    """
     patch, contact, held = before.patch, acts.contact, acts.held
     for axis in along:
         matrix, finer = raised(patch, axis, more)
         spread = _spreading(matrix, _masses(finer, axis), "uvw"[axis] in (before.closed or ""))
-        at_ends = spread.copy()
-        for end in (0, -1):  # what supports exert on the faces there acts on no others
-            at_ends[:, end] = np.eye(len(matrix))[:, end]
-        contact, held = _on(spread, patch, finer, axis, contact), _on(at_ends, patch, finer, axis, held)
-        patch = finer
+        by_component = []
+        for component in range(3):
+            kept = spread.copy()
+            for end in np.flatnonzero(at_ends[axis, :, component]):
+                kept[:, -end] = np.eye(len(matrix))[:, -end]
+            by_component.append(_on(kept, patch, finer, axis, held[:, component : component + 1]))
+        contact, held, patch = _on(spread, patch, finer, axis, contact), np.hstack(by_component), finer
     return contact + held
+
+
+def held_at_ends(problem: Problem, stage: int, piece: Sequence[Body], body: Body) -> BoolArray:
+    """Ends of a body's directions at which supports of faces, edges and corners there act, by component, shape (3, 2, 3).
+
+    What a support exerts on a face is spread along that, and acts on no other points than those of the face. Of what is glued to the
+    body it may be either end. On a body of two orders what keeps the lower one is not told from supports.
+    """
+    found = np.full((3, 2, 3), body.raised is not None)
+    names = {one.name for one in piece}
+    for support in problem.supports:
+        for face in support.place.meeting if support.place.body in names and support.holds(stage) else ():
+            places = next(places for places in shared_directions(problem) if (support.place.body, face[0]) in places)
+            for letter in (letter for name, letter in places if name == body.name):
+                ends = [int(face[1])] if support.place.body == body.name else [0, 1]
+                components = range(3) if support.moment is not None else support.carried
+                found[np.ix_(["uvw".index(letter)], ends, list(components))] = True
+    return found
 
 
 def loads_on(problem: Problem, bodies: Sequence[Body], now: Equilibrium, time: float) -> FloatArray:
@@ -54,9 +87,10 @@ def loads_on(problem: Problem, bodies: Sequence[Body], now: Equilibrium, time: f
 
 
 def _on(matrix: FloatArray, before: Patch, after: Patch, along: int, forces: FloatArray) -> FloatArray:
-    """Forces on a patch by those on the patch before and a matrix between those of a line (theory 9.23)."""
-    grid = (forces / before.weights[:, None]).reshape((*before.shape, 3), order="F")
-    return np.asarray(along_axis(matrix, grid, along).reshape(-1, 3, order="F") * after.weights[:, None])
+    """Forces, some of their components, on a patch by those on the patch before and a matrix between those of a line (theory 9.23)."""
+    count = forces.shape[1]
+    grid = (forces / before.weights[:, None]).reshape((*before.shape, count), order="F")
+    return np.asarray(along_axis(matrix, grid, along).reshape(-1, count, order="F") * after.weights[:, None])
 
 
 def _spreading(matrix: FloatArray, masses: FloatArray, closes: bool) -> FloatArray:
