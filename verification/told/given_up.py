@@ -13,6 +13,7 @@ from told.beside import STOPPED, given_up_at
 from told.circling import round_in_a_circle
 from told.other_ways import DUAL, pressed
 from told.shared import CORNERED
+from told.thin_masters import BOWL, FILM, ended
 from told.word_by_word import SENTENCES
 from told.wrong.causes import said, scene
 from told.wrong.contacts import PRESS
@@ -93,6 +94,8 @@ def of_causes() -> Iterator[tuple[str, str]]:
     yield "thin, bent", "\n".join(said(scene(TOP=1.0004), SingularSystemError("")))
     yield "shared edge", "\n".join(said(Simulation(Scene.from_toml(CORNERED).problem())))
     yield "at an edge", "\n".join(said(given_up_at(-0.8, 2.0), ConvergenceError(STOPPED)))
+    yield "through a thin master", ended(BOWL).rpartition("). ")[2]
+    yield "through a film", ended(FILM).rpartition("). ")[2]
     yield "on the way", "\n".join(said(lifted(0.1)))
     yield "on the way, balanced", "\n".join(said(begun(BALANCED)))
     yield "averages", error(DUAL).partition("iterations. ")[2]

@@ -21,6 +21,7 @@ from isomortar.told.after.on_the_way import on_the_way
 from isomortar.told.after.other_ways import other_ways
 from isomortar.told.after.over_edges import BESIDE, at_an_edge, over_the_edge
 from isomortar.told.after.overcome import overcome
+from isomortar.told.after.passed_through import passed_through
 from isomortar.told.after.shared_edges import shared_edges
 from isomortar.told.after.sliding import sliding
 from isomortar.told.after.tipping import giving_way, tipping
@@ -83,6 +84,7 @@ def _causes(equilibrium: Equilibrium, state: State, error: Exception, longer: Se
     if not told and not isinstance(error, SingularSystemError):  # that tells by itself what repeats, and what nothing holds
         yield from shared_edges(equilibrium, state)
         yield from (sentence for _, sentence in on_the_way(equilibrium, state))
+        yield from passed_through(equilibrium, state, error)
         yield from _few(problem.settings, str(error))
     if not told and isinstance(error, SingularSystemError):
         yield from averages_apart(equilibrium, state)
