@@ -53,6 +53,29 @@ def test_large_bodies_are_not_computed(monkeypatch: pytest.MonkeyPatch) -> None:
         assert solves(monkeypatch) < 6 * finer
 
 
+#: A column between a plane and a support that presses it: all is homogeneous, whatever its order.
+COLUMN = """
+format = 1
+bodies.b.geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 1, 1] }
+bodies.b.mesh = { order = [2, 2, 1], elements = [2, 2, 1] }
+contacts.floor = { slave = "b.w0", plane = { point = [0, 0, 0] }, friction = 0 }
+supports.top = { face = "b.w1", components = ["z"] }
+supports.x = { face = "b.u0", components = ["x"] }
+supports.y = { face = "b.v0", components = ["y"] }
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.1] }]
+"""
+
+
+def test_contact_at_an_end_acts_at_that_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A column is no stiffer than one of a higher order: what presses on its end, and is not spread along it, squeezes both as much."""
+    simulation, kept = Simulation(Scene.from_toml(COLUMN).problem()), list[Balance]()
+    after_step = simulation._watches.after_step
+    monkeypatch.setattr(simulation._watches, "after_step", lambda balance, *other: kept.append(balance) or after_step(balance, *other))
+    list(simulation.run())
+    share = locking.locking(simulation.equilibrium, kept[-1], simulation.problem.bodies[0], [2])
+    assert share == pytest.approx(0.0, abs=1e-9)
+
+
 #: Two beams that go on in one, or as much of one that JOINT lacks, with what acts on them.
 IN_LINE = """
 format = 1

@@ -7,10 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from isomortar._frozen import frozen
 from isomortar.geometry.patch import FloatArray, Patch
 from isomortar.geometry.refinement import homogeneous
 from isomortar.geometry.splines import Spline
-from isomortar.model.entities import Body, Problem
+from isomortar.model.entities import Body, Face, Problem
 from isomortar.model.glue import shared_directions
 from isomortar.model.loads import Loads
 from isomortar.model.numbering import Numbering
@@ -23,49 +24,66 @@ from isomortar.told.during.raising import Finer, along_axis, raised
 STEP = 1e-5
 
 
-def carried(before: Body, acts: Acting, along: Sequence[int], more: Finer, at_ends: BoolArray) -> FloatArray:
-    """Forces of contact and supports on a body's patch as those on the one of a higher order, but for loads (theory 9.23).
+@frozen
+class AtEnds:
+    """Ends of a body's directions across which something acts, by component, each shape (3, 2, 3): it acts on no other points.
 
-    Parameters
+    Attributes
     ----------
-    before : Body
-    acts : Acting
-    along : sequence of int
-        Numbers of the directions.
-    more : Finer
-    at_ends : ndarray of bool, shape (3, 2, 3)
-        What supports exert that stays at the two ends of each direction, by component: `held_at_ends`.
+    contact, held : ndarray of bool
+        Contact on the faces there, and supports of faces, edges and corners. What they exert on another face is spread along that.
     """
+
+    contact: BoolArray
+    held: BoolArray
+
+
+def carried(before: Body, acts: Acting, along: Sequence[int], more: Finer, at_ends: AtEnds) -> FloatArray:
+    """Forces of contact and supports on a body's patch as those on the one of a higher order, but for loads (theory 9.23)."""
     patch, contact, held = before.patch, acts.contact, acts.held
     for axis in along:
         matrix, finer = raised(patch, axis, more)
         spread = _spreading(matrix, _masses(finer, axis), "uvw"[axis] in (before.closed or ""))
-        by_component = []
-        for component in range(3):
-            kept = spread.copy()
-            for end in np.flatnonzero(at_ends[axis, :, component]):
-                kept[:, -end] = np.eye(len(matrix))[:, -end]
-            by_component.append(_on(kept, patch, finer, axis, held[:, component : component + 1]))
-        contact, held, patch = _on(spread, patch, finer, axis, contact), np.hstack(by_component), finer
+        contact = _on_finer(contact, spread, at_ends.contact[axis], patch, finer, axis)
+        held, patch = _on_finer(held, spread, at_ends.held[axis], patch, finer, axis), finer
     return contact + held
 
 
-def held_at_ends(problem: Problem, stage: int, piece: Sequence[Body], body: Body) -> BoolArray:
-    """Ends of a body's directions at which supports of faces, edges and corners there act, by component, shape (3, 2, 3).
+def _on_finer(forces: FloatArray, spread: FloatArray, stays: BoolArray, before: Patch, after: Patch, along: int) -> FloatArray:
+    """Forces on a finer patch: spread along a direction but for the components that stay at its ends, shape (2, 3)."""
+    found = []
+    for component in range(3):
+        matrix = spread.copy()
+        for end in np.flatnonzero(stays[:, component]):
+            matrix[:, -end] = np.eye(len(matrix))[:, -end]
+        found.append(_on(matrix, before, after, along, forces[:, component : component + 1]))
+    return np.hstack(found)
 
-    What a support exerts on a face is spread along that, and acts on no other points than those of the face. Of what is glued to the
-    body it may be either end. On a body of two orders what keeps the lower one is not told from supports.
+
+def at_ends(problem: Problem, stage: int, piece: Sequence[Body], body: Body) -> AtEnds:
+    """What acts at ends of a body's directions in a stage; of what is glued to the body it may be either end.
+
+    On a body of two orders what keeps the lower one, which may be anywhere, is not told from supports.
     """
-    found = np.full((3, 2, 3), body.raised is not None)
-    names = {one.name for one in piece}
+    held = np.full((3, 2, 3), body.raised is not None)
+    names, contact = {one.name for one in piece}, np.zeros_like(held)
     for support in problem.supports:
-        for face in support.place.meeting if support.place.body in names and support.holds(stage) else ():
-            places = next(places for places in shared_directions(problem) if (support.place.body, face[0]) in places)
-            for letter in (letter for name, letter in places if name == body.name):
-                ends = [int(face[1])] if support.place.body == body.name else [0, 1]
-                components = range(3) if support.moment is not None else support.carried
-                found[np.ix_(["uvw".index(letter)], ends, list(components))] = True
-    return found
+        if support.place.body in names and support.holds(stage):
+            components = range(3) if support.moment is not None else support.carried
+            for name in support.place.meeting:
+                axes, ends = _ends(problem, body, Face(support.place.body, name))
+                held[np.ix_(axes, ends, list(components))] = True
+    sides = [side for pair in problem.contacts for side in (pair.slave, pair.master) if isinstance(side, Face)]
+    for face in (face for side in sides for face in side.faces if face.body in names):
+        axes, ends = _ends(problem, body, face)
+        contact[np.ix_(axes, ends)] = True
+    return AtEnds(contact, held)
+
+
+def _ends(problem: Problem, body: Body, face: Face) -> tuple[list[int], list[int]]:
+    """Directions of a body that go across a face, of it or of what is glued to it, and at which of their ends the face is."""
+    places = next(places for places in shared_directions(problem) if (face.body, face.face[0]) in places)
+    return ["uvw".index(letter) for name, letter in places if name == body.name], [int(face.face[1])] if face.body == body.name else [0, 1]
 
 
 def loads_on(problem: Problem, bodies: Sequence[Body], now: Equilibrium, time: float) -> FloatArray:

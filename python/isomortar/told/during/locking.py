@@ -15,7 +15,7 @@ from isomortar.model.numbering import Numbering, same_points
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.timing import Ledger
 from isomortar.told.during.acting import acting
-from isomortar.told.during.carrying import carried, held_at_ends, loads_on
+from isomortar.told.during.carrying import at_ends, carried, loads_on
 from isomortar.told.during.giving_way import deformed_by
 from isomortar.told.during.raising import Finer, raised_body
 
@@ -58,7 +58,7 @@ def locking(equilibrium: Equilibrium, balance: Balance, body: Body, along: Seque
         own = [one.name for one in piece if len(axes[one.name]) == len(along)]
         went = _went(_of(problem, before, stage), own, {name: acts.whole for name, acts in forces.items()})
         finest = _of(problem, [raised_body(one, axes[one.name], more) for one in before], stage)
-        ends = {one.name: held_at_ends(problem, stage, piece, one) for one in piece}
+        ends = {one.name: at_ends(problem, stage, piece, one) for one in piece}
         on_finest = {one.name: carried(one, forces[one.name], axes[one.name], more, ends[one.name]) for one in before}
         given = () if body.raised else piece  # what acts on a body of two orders is one, loads and all
         loads = loads_on(problem, [raised_body(one, axes[one.name], more) for one in given], finest, equilibrium.time) if given else 0.0
