@@ -12,6 +12,7 @@ import numpy as np
 from told.beside import STOPPED, given_up_at
 from told.circling import round_in_a_circle
 from told.other_ways import DUAL, pressed
+from told.repeated import STUCK
 from told.shared import CORNERED
 from told.thin_masters import BOWL, FILM, ended
 from told.word_by_word import SENTENCES
@@ -120,6 +121,7 @@ def of_singular_tangents() -> Iterator[tuple[str, str]]:
     sole = "stages.press.motions={top={translate=[0, 0, -0.02]}, sole={translate=[0, 0, -0.02]}}"
     yield "all held", without_digits(error(BLOCK + 'supports.top = { face = "block.w1" }\nsupports.sole = { face = "block.w0" }', sole))
     yield "repeated", explained([], [3, 5])
+    yield "held beside friction", without_digits(error(STUCK))
     yield "left", explained([], [3, 5], found=0)
     same = ("contacts.wall.slave='block.w0'", "contacts.wall.plane={ point = [1, 0, 0] }")
     yield "repeat others", re.sub(r"\d+|'\w+'", "#", error(CORNER, *same).partition("the first of them ")[2])

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from told.wrong.singular import CORNER
+from told.wrong.singular import CORNER, error
 
 from isomortar.harness import Bound, case
+from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.singular import PairConditions, explain
@@ -17,6 +18,22 @@ from isomortar.solve.timing import Ledger
 SCENE = CORNER.replace(
     "contacts.wall", 'contacts.back = { slave = "block.v0", plane = { normal = [0, 1, 0] }, friction = 0.2 }\ncontacts.wall'
 )
+#: A block two sides of which are held, on a block too coarse to do all that sticks to it, and what gets past that.
+STUCK = """
+format = 1
+bodies.block.geometry = { kind = "box", lower = [-0.3, -0.3, 0], upper = [0.3, 0.3, 0.5] }
+bodies.block.mesh = { order = [2, 2, 1], elements = [3, 3, 1] }
+bodies.base.geometry = { kind = "box", lower = [-0.6, -0.6, -0.5], upper = [0.7, 0.65, 0] }
+bodies.base.mesh = { order = [2, 2, 1], elements = [2, 2, 1] }
+contacts.c = { slave = "block.w0", master = "base.w1", friction = 0.3 }
+supports.top.face = "block.w1"
+supports.floor.face = "base.w0"
+supports.x = { face = "block.u0", components = ["x"] }
+supports.y = { face = "block.v0", components = ["y"] }
+stages = [{ name = "press", steps = 1, motions.top.translate = [0, 0, -0.1] }]
+solver.max_cuts = 1
+"""
+WAYS = ("bodies.base.mesh.elements=[8, 8, 1]", "solver.method=uzawa")
 #: Where each of its contacts is: the coordinate that is 0 there.
 PLANES = {"floor": 2, "back": 1, "wall": 0}
 HELD, OTHERS, BESIDE, EACH_OTHER = (
@@ -104,3 +121,20 @@ def prescribed_or_beside() -> dict[str, float]:
         ([held[0], free[0]], 0.75, BESIDE),
     )
     return {"wrong": float(sum(words not in corner.said("wall", constraints, 0, beside) for constraints, beside, words in asked))}
+
+
+@case(
+    claim="Where what sticks to a deformable master repeats what supports hold, a finer master and augmentations are advised; each of "
+    "the two brings the run to its end.",
+    tier="gate",
+    bounds={
+        "said": Bound(1.0, 1.0, "definition: load steps given up with that advice"),
+        "given up": Bound(0.0, 0.0, "definition: runs that one of the two does not bring to their end"),
+    },
+)
+def stuck_beside_supports() -> dict[str, float]:
+    """Of one scene, and of both ways."""
+    said = error(STUCK)
+    ended = [len(list(Simulation(Scene.from_toml(STUCK, overrides=[way]).problem()).run())) == 1 for way in WAYS]
+    advised = HELD in said and 'refine the master, try solver.method = "uzawa"' in said
+    return {"said": float(advised), "given up": float(len(WAYS) - sum(ended))}

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from isomortar._frozen import frozen
 from isomortar.errors import SingularSystemError
 from isomortar.geometry.patch import FloatArray, IntArray
+from isomortar.model.entities import Face
 from isomortar.model.glue import named
 from isomortar.model.numbering import Numbering
 from isomortar.model.supports import Supports
@@ -105,10 +106,12 @@ def _repeated(
     if 2 * there < total:
         reason = beside
     elif 0 < prescribed < len(among):
+        sticks = pair.contact.friction_law.acts and isinstance(pair.contact.master, Face)  # which may be too coarse for what sticks to it
+        ways = 'refine the master, try solver.method = "uzawa", ' if sticks else ""
         reason = (
             f"repeat what supports prescribe: {prescribed} of them constrain control points that supports hold, and the others cannot make "
-            "good what is prescribed there. Keep supports off the edge of the contact face, hold fewer components, or do not move the edge "
-            "into the master"
+            f"good what is prescribed there. Keep supports off the edge of the contact face, hold fewer components, {ways}or do not move "
+            "the edge into the master"
         )
     elif others.get(twice):
         reason = (
