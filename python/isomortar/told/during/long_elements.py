@@ -9,6 +9,7 @@ from isomortar.geometry.patch import FloatArray
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Contact, Face, Problem
 from isomortar.model.sheet import Sheet
+from isomortar.model.supports import BoolArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.told.during.extent import extent
 from isomortar.told.during.giving_way import Yields
@@ -21,9 +22,10 @@ from isomortar.told.during.softness import softness
 KEEPS, FREE, MOST = 0.2, 0.4, 0.8
 #: Order from which on elements follow shorter pressures in proportion.
 SMOOTH = 2.0
-#: The same across, by one over the width of contact in heights of elements, of order 2; of order 1 four times as much: caps on one element
-#: of order 2 across, twice as high as the contact was wide, kept back 0.02 to 0.06.
-ACROSS = 0.06
+#: The same across, by one over the width of contact in heights of elements of order 2: caps on one that was twice as high as the contact
+#: was wide kept back 0.02 to 0.06. Of order 1 four times as much, and nothing is taken from it, nor is contact that is as wide as the face
+#: left out: blocks on one element, as high as half their width, are a third too stiff.
+ACROSS, LINEAR = 0.06, 0.24
 #: Share of a face's elements from which on contact is as wide as it: nothing beside it is to be bent down.
 ALL = 0.8
 #: Elements of the master are too long for a finer slave: longer than its own by this factor. Where they are not both are too long.
@@ -155,17 +157,18 @@ def _side(problem: Problem, place: Face, at: FloatArray, share: FloatArray, soft
     widths = np.array([extent(places, share, d.boundaries, np.arange(d.elements + 1.0), closed)[1] for places, d, closed in sides])
     narrow = np.divide(1.0, widths, out=np.full(2, np.inf), where=widths > 0.0)
     narrow[widths > ALL * np.array([direction.elements for direction in sheet.directions])] = 0.0
-    across, order = _across(problem, place, sheet, widths[narrow > 0.0])
     orders = np.array([direction.order for direction in sheet.directions])
-    keeps = np.append(KEEPS * np.minimum(1.0, SMOOTH / orders), ACROSS * (SMOOTH / order) ** 2)
-    kept = keeps * np.maximum(0.0, np.append(narrow, across) - FREE)
+    along = KEEPS * np.minimum(1.0, SMOOTH / orders) * np.maximum(0.0, narrow - FREE)
+    kept = np.append(along, _across(problem, place, widths, narrow > 0.0))
     return Side(place, (*sheet.letters, place.face[0]), widths, np.minimum(MOST, kept), softness)
 
 
-def _across(problem: Problem, place: Face, sheet: Sheet, widths: FloatArray) -> tuple[float, int]:
-    """How high elements are at a face, in widths of the contact, and their order across; nothing of joined faces, and of wide contact."""
-    patch, axis = problem.body(place.body).patch, "uvw".index(place.face[0])
+def _across(problem: Problem, place: Face, widths: FloatArray, narrow: BoolArray) -> float:
+    """What elements at a face may keep back across it, by how high they are and how wide contact is; none of joined faces."""
+    patch, axis, sheet = problem.body(place.body).patch, "uvw".index(place.face[0]), Sheet.of(problem, place)
     order = patch.directions[axis].order
-    if len(place.faces) > 1 or not len(widths):
-        return 0.0, order
-    return float(element_lengths(patch)[axis][-int(place.face[1])] / (sheet.element_size * widths.min())), order
+    counts = widths > 0.0 if order == 1 else narrow & (widths > 0.0)
+    if len(place.faces) > 1 or not counts.any():
+        return 0.0
+    high = float(element_lengths(patch)[axis][-int(place.face[1])] / (sheet.element_size * widths[counts].min()))
+    return LINEAR * high if order == 1 else ACROSS * (SMOOTH / order) ** 2 * max(0.0, high - FREE)
