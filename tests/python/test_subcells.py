@@ -98,6 +98,16 @@ def test_lines_are_left_alone_at_the_bounds_of_an_element_by_shares_of_its_own_l
     assert len(bounds(beside(0.0, 1.0, elements, line - 1.0, line + 1.0, 2, 1))) == elements + more
 
 
+@pytest.mark.parametrize("elements", [1, 100])
+@pytest.mark.parametrize(("other", "cut"), [(0.7, [0.3, 0.7]), (0.7005, [0.3]), (0.6995, [0.6995])])
+def test_lines_are_as_near_by_shares_of_the_element_that_they_cut(elements: int, other: float, cut: list[float]) -> None:
+    """Not of its length along the other coordinate, along which it may be a hundred times as long."""
+    first = elements // 2
+    low, high = (first + 0.3) / elements, (first + other) / elements
+    found = elements * bounds(beside(0.0, 1.0, elements, 2.0 * low - high, 2.0 * high - low, 3, 1)) - first
+    np.testing.assert_allclose(found[(found > 0.1) & (found < 0.9)], cut, atol=1e-6)
+
+
 def test_lines_are_counted_along_the_middle_of_cells() -> None:
     """Where the master is as narrow as that they cross it as well; at the sides of the cells there is none of it."""
     wide = beside(0.0, 1.0, 1, -0.35, 2.05, 8, 0)
