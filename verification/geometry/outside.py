@@ -58,6 +58,8 @@ def beside_boxes(sides: str) -> dict[str, float]:
 
 #: Sides of a plate that leans so far that cells of its edges are long and slanting, as rows.
 LEANING = np.array([[4.0, 0.0, 0.0], [2.0, 3.0, 0.0], [1.5, -1.0, 0.05]])
+#: Sides of a splinter that lean together: at its two tips its faces meet so sharply that points beside it seem to be deep in it.
+SPLINTER = np.array([[4.0, 0.0, 0.0], [4.0, 1.0, 0.0], [4.0, 0.4, 0.9]])
 
 
 @case(
@@ -79,6 +81,27 @@ def leaning() -> dict[str, float]:
         "off": float(np.abs(found + deep)[deep > 0.0].max() / np.ptp(LEANING)),
         "sides": float(np.count_nonzero((found < 0.0) != (deep > 0.0))),
     }
+
+
+@case(
+    claim="Of points round the tips of a splinter, all beside it, and its middle the deepest is the middle, though a dozen and more seem "
+    "to be in it, and deeper.",
+    tier="gate",
+    bounds={
+        "off": Bound(at_most=1e-13, reason="round-off: of the splinter's length"),
+        "seem": Bound(at_least=13.0, reason="definition: or too few are beside it that seem to be deeper to tell"),
+    },
+)
+def sharp() -> dict[str, float]:
+    """Error of the middle's depth over the length, and points that seem to be deeper."""
+    cube, random = box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), np.random.default_rng(11)
+    shape = Outside.of(replace(cube, control_points=cube.control_points @ SPLINTER), FACES)
+    near = random.integers(0, 2, (2 * SOME, 1)) * SPLINTER.sum(axis=0) + random.uniform(-0.5, 0.5, (2 * SOME, 3))
+    shares = near @ np.linalg.inv(SPLINTER)
+    points = near[np.any((shares < -NEAR) | (shares > 1.0 + NEAR), axis=1)]
+    depth = 0.5 * np.linalg.det(SPLINTER) / np.linalg.norm(np.cross(SPLINTER[[1, 2, 0]], SPLINTER[[2, 0, 1]]), axis=1).max()
+    found = shape.deepest(np.concatenate([points, [0.5 * SPLINTER.sum(axis=0)]]), 0.0)
+    return {"off": float(abs(found - depth) / np.ptp(SPLINTER)), "seem": float(np.count_nonzero(-shape.heights(points)[0] > depth))}
 
 
 def grids(body: Built) -> list[FloatArray]:

@@ -156,6 +156,9 @@ CASES: tuple[tuple[str, tuple[str, ...], str], ...] = (
     (SCENE, weighs("body='above',weight=[0,0,-9835]"), "times the size of its body"),
     (SCENE, weighs("face='above.u0',pressure=9.81"), ""),
     # Bounds of friction.
+    (SCENE, ("contacts.c.friction=2.05",), "a coefficient of friction of 2.05 is above what materials have"),
+    (SCENE, ("contacts.c.friction=2",), ""),
+    (SCENE, ("contacts.c.friction=2.05", "contacts.c.traction_max=0.1"), ""),
     (SCENE, ("contacts.c={slave='above.w0',master='below.w1',friction=0.3,traction_max=1.1e-6}",), ""),
     (SCENE, ("contacts.c={slave='above.w0',master='below.w1',friction=0.3,traction_max=0.9e-6}",), "traction_max = 9e-07 is as good as"),
     # Turns of round bodies: about a line that is far from them, or beside their middle, and where they go along what they touch.
