@@ -147,6 +147,11 @@ def test_a_scene_that_is_refused_leaves_results_and_no_lock(results: Path) -> No
     assert list(results.parent.iterdir()) == [results]
 
 
+def test_what_cannot_be_replaced_still_holds_load_steps_up_to_its_last_one(results: Path) -> None:
+    assert len(recorded(results)) > 1
+    assert writer._still_in(results) == f"; it still holds load steps up to {recorded(results)[-1]}"
+
+
 @pytest.mark.parametrize("kilobytes", [1, 40, 60, 80, 100])
 def test_a_full_disk_has_its_sentence(tmp_path: Path, kilobytes: int) -> None:
     """Stands for a full disk: a limit on the size of a file, which fails the same calls. HDF5 ended the process when its own failed."""

@@ -4,7 +4,7 @@ import pytest
 
 from isomortar.scene import Scene
 from isomortar.trade.advice import cheaper_dials
-from isomortar.trade.knobs import Dial, Knob, Setting, changed, dials_of
+from isomortar.trade.knobs import KNOBS, Dial, Knob, Setting, changed, dials_of
 from trade_samples import TINY
 
 TWO = """
@@ -31,6 +31,15 @@ def test_every_setting_makes_the_scene_that_it_names(scene):
         made = [changed(scene, [setting]) for setting in dial.settings]
         assert len({one.to_toml() for one in made}) == len(made), dial.name
         assert made[dial.own].to_toml() == scene.to_toml(), dial.name
+
+
+def test_a_slave_has_smooth_contact_by_its_own_modulus():
+    """A rigid one has none."""
+    knobs = [knob for knob in KNOBS if knob.name == "smoothing"]
+    assert knobs
+    deforms, rigid = (Scene.from_toml(TWO, overrides=of) for of in ((), ("bodies.block.rigid=true",)))
+    assert [dial.name for dial in dials_of(deforms, knobs=knobs)] == ["smoothing of floor"]
+    assert dials_of(rigid, knobs=knobs) == ()
 
 
 def test_settings_of_a_body_go_on_from_each_other(scene):
