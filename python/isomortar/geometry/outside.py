@@ -15,7 +15,8 @@ from isomortar.geometry.patch import FloatArray, Patch
 
 #: A face of less than this share of the largest one's area is a line or a point: the axis of a cylinder, a pole of a ball.
 NO_AREA = 1e-9
-#: Points that are looked at of those that seem to be in a body, the deepest first; of sharp corners some dozens seem to be, and are not.
+#: Points that are looked at of those that seem to be in a body: so many of the deepest, as by sharp corners some dozens seem to be and are
+#: not, and as many of the others.
 LOOKED = 60
 #: How often the outside goes round a place from which on that is within, halfway between never and once.
 HALF_ROUND = 0.5
@@ -77,5 +78,6 @@ class Outside:
         if not len(points):
             return 0.0
         depths = -self.heights(points)[0]
-        order = np.argsort(-depths, kind="stable")[: min(LOOKED, np.count_nonzero(depths > least))]
+        order = np.argsort(-depths, kind="stable")[: np.count_nonzero(depths > least)]
+        order = np.append(order[:LOOKED], order[LOOKED :: 1 + len(order) // LOOKED])
         return next((float(depths[k]) for k in order if self.turns(points[k]) > HALF_ROUND), 0.0)

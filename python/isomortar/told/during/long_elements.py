@@ -11,6 +11,7 @@ from isomortar.model.entities import Contact, Face, Problem
 from isomortar.model.sheet import Sheet
 from isomortar.model.supports import BoolArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
+from isomortar.told.before.dents import AT_POINTS
 from isomortar.told.during.extent import extent
 from isomortar.told.during.giving_way import Yields
 from isomortar.told.during.indenting import coordinates_of_slave, further
@@ -145,8 +146,10 @@ def long_elements(equilibrium: Equilibrium, balance: Balance, number: int, yield
     sides = tuple(_side(problem, *place, share, part) for place, part in zip(places, soft / soft.sum(), strict=False))
     lengths = [Sheet.of(problem, place).element_size for place, _ in places]
     longer = problem.images == 1 and lengths[-1] > FINER * lengths[0]
-    suspect = sum(side.suspect for side in sides) > SUSPECT
-    known = further(equilibrium, balance, number, places) if suspect else np.zeros(len(sides))
+    known = np.zeros(len(sides))
+    if sum(side.suspect for side in sides) > SUSPECT:  # forces at single points press in the further, the shorter elements are
+        at_points = pair.contact.enforcement in AT_POINTS
+        known = np.full(len(sides), np.nan) if at_points else further(equilibrium, balance, number, places)
     return LongElements(sides, longer, known, yields)
 
 
