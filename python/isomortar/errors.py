@@ -52,6 +52,10 @@ class LostProjectionError(KernelError):
     """The closest-point projection found no point."""
 
 
+class PassedThroughError(LostProjectionError):
+    """A slave's point has gone through the body of its master."""
+
+
 class SingularSystemError(KernelError):
     """The linear system is singular or nearly so: a body that nothing holds, or redundant constraints."""
 

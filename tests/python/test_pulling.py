@@ -24,7 +24,7 @@ stages = [{ name = "press", steps = 1, motions.top.translate = [0.02, 0, -0.05] 
 def test_their_sum_is_the_force_that_acts(grading: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """And no more than that, where all of them press; tangential ones are none of them."""
     found = []
-    monkeypatch.setattr(pulling, "pulls", lambda *given: found.append(pulling._normal_forces(*given)) or False)  # type: ignore[func-returns-value]
+    monkeypatch.setattr(pulling, "pulls", lambda *given: found.append(pulling.normal_forces(*given)) or False)  # type: ignore[func-returns-value]
     problem = Scene.from_toml(SCENE.replace("GRADING", grading)).problem()
     (step,) = Simulation(problem).run()
     on_slave, outward = found[-1]

@@ -6,7 +6,7 @@ import math
 from typing import NoReturn
 
 from isomortar._codes import Status
-from isomortar.errors import FoldedElementError, KernelError, LostProjectionError
+from isomortar.errors import FoldedElementError, KernelError, LostProjectionError, PassedThroughError
 
 
 def raise_status(status: int, place: int, jacobian: float = math.nan) -> NoReturn:
@@ -24,7 +24,7 @@ def raise_status(status: int, place: int, jacobian: float = math.nan) -> NoRetur
             f"a pattern does not fit what is added to it: block missing in row {place} (-1: it has other rows)",
         ),
         Status.NOT_FINITE: (LostProjectionError, f"the position of control point {place} is not finite"),
-        Status.PASSED_THROUGH: (LostProjectionError, f"slave quadrature point {place} has passed through the master's body"),
+        Status.PASSED_THROUGH: (PassedThroughError, f"slave quadrature point {place} has passed through the master's body"),
     }
     kind, sentence = sentences.get(status, (KernelError, f"the kernel returned status {Status(status).name} at {place}"))
     raise kind(sentence, place)

@@ -78,7 +78,7 @@ class Feet:
     def named(self, error: LostProjectionError, positions: FloatArray) -> LostProjectionError:
         """An error of the kernel's projection with the contact, and the place of its slave point, in its words."""
         where = f", at {self._place(positions, error.place)}" if np.isfinite(positions).all() else ""
-        return LostProjectionError(f"contact {self._pair.contact.name!r}: {error}{where}", error.place)
+        return type(error)(f"contact {self._pair.contact.name!r}: {error}{where}", error.place)
 
     def _place(self, positions: FloatArray, q: int) -> str:
         point = slave_points(self._pair, positions)[q]

@@ -39,7 +39,7 @@ DIE = """
 format = 1
 [bodies.block]
 geometry = { kind = "box", lower = [-0.5, -0.3, 0.0], upper = [0.5, 0.3, 0.4] }
-mesh = { family = "L", order = [2, 2, 1], elements = [2, 2, 1] }
+mesh = { family = "L", order = [2, 2, 1], elements = [2, 2, 2] }
 [bodies.die]
 rigid = true
 geometry = { kind = "bowl", half_width = 0.6, bottom = 0.4, rise = 0.1, top = 0.8 }

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from isomortar.errors import LostProjectionError
+from isomortar.errors import LostProjectionError, PassedThroughError
 from isomortar.geometry.faces import cells
 from isomortar.model import constants
 from isomortar.model.entities import Face
@@ -16,8 +16,6 @@ from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.feet import gaps, slave_points
 from isomortar.solve.record import State
 
-#: What an error says of a point that went through (`_bindings.statuses`).
-THROUGH = "has passed through the master's body"
 #: Share of the master's thickness that points are inside it from which on constraints do not feel them: of narrow contacts that were given
 #: up it was more than 0.99, of those whose first increment was longer than their master is thick round-off.
 INSIDE = 0.5
@@ -34,7 +32,7 @@ def passed_through(equilibrium: Equilibrium, state: State, error: Exception) -> 
     error : Exception
         Why the next one did not.
     """
-    if not isinstance(error, LostProjectionError) or THROUGH not in str(error):
+    if not isinstance(error, PassedThroughError):
         return
     for number, pair in enumerate(equilibrium.pairs):
         contact = pair.pair.contact

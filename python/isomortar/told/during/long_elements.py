@@ -41,8 +41,8 @@ PARTS = (0.5, 0.5, 1.0)
 
 
 @frozen
-class Side:
-    """How a contact lies on elements of one of its sides.
+class SideElements:
+    """How a contact lies on the elements of one of its sides.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class LongElements:
 
     Attributes
     ----------
-    sides : tuple of Side
+    sides : tuple of SideElements
         Slave and master, but for a rigid plane.
     longer : bool
         Whether the master's elements are longer than the slave's.
@@ -90,7 +90,7 @@ class LongElements:
         How far both give way.
     """
 
-    sides: tuple[Side, ...]
+    sides: tuple[SideElements, ...]
     longer: bool
     further: FloatArray
     yields: Yields
@@ -153,7 +153,7 @@ def long_elements(equilibrium: Equilibrium, balance: Balance, number: int, yield
     return LongElements(sides, longer, known, yields)
 
 
-def _side(problem: Problem, place: Face, at: FloatArray, share: FloatArray, softness: float) -> Side:
+def _side(problem: Problem, place: Face, at: FloatArray, share: FloatArray, softness: float) -> SideElements:
     """A side of a contact whose force is at some coordinates, by shares of it."""
     sheet = Sheet.of(problem, place)
     sides = zip(at.T, sheet.directions, sheet.closed, strict=True)
@@ -163,7 +163,7 @@ def _side(problem: Problem, place: Face, at: FloatArray, share: FloatArray, soft
     orders = np.array([direction.order for direction in sheet.directions])
     along = KEEPS * np.minimum(1.0, SMOOTH / orders) * np.maximum(0.0, narrow - FREE)
     kept = np.append(along, _across(problem, place, widths, narrow > 0.0))
-    return Side(place, (*sheet.letters, place.face[0]), widths, np.minimum(MOST, kept), softness)
+    return SideElements(place, (*sheet.letters, place.face[0]), widths, np.minimum(MOST, kept), softness)
 
 
 def _across(problem: Problem, place: Face, widths: FloatArray, narrow: BoolArray) -> float:
