@@ -147,6 +147,7 @@ def test_counts_of_a_run_are_those_that_the_results_tell(tmp_path: Path, monkeyp
     for name in ("solve", "solve_again"):
         monkeypatch.setattr(CheckedSystem, name, noted(getattr(CheckedSystem, name)))
     monkeypatch.setattr(_bindings, "add_body", visited)
+    monkeypatch.setattr("isomortar.told.during.long_elements.SUSPECT", np.inf)  # what is told of long elements is no load step's work
     scene, path = Scene.load("twist", SMALL), tmp_path / "small.h5"
     with isomortar.run(scene, path) as results:
         found, steps = totals(results), len(results.steps)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+from told.long_elements import CAP
 
 from isomortar._bindings import surface_functions
 from isomortar.geometry.splines import Spline
+from isomortar.march.simulation import Simulation
 from isomortar.model.contrasts import element_lengths
 from isomortar.model.entities import Face
 from isomortar.model.sheet import Sheet
@@ -14,7 +18,9 @@ from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Equilibrium
 from isomortar.solve.feet import slave_points
 from isomortar.solve.timing import Ledger
-from isomortar.told.during.indenting import GROWS, PARTS, coordinates_of_slave, cut_under, cuts
+from isomortar.told.during import long_elements
+from isomortar.told.during.extent import extent
+from isomortar.told.during.indenting import GROWS, PARTS, coordinates_of_slave, cut_under, cuts, further
 
 #: Slaves whose functions are rational, go all round, are Lagrange elements, and are integrated in parts.
 SLAVES = {
@@ -72,3 +78,29 @@ def test_a_body_that_is_cut_has_the_shape_that_it_had() -> None:
     assert np.abs(was - now).max() < 1e-13 * body.size
     axis = "uvw".index(contact.face[0])
     assert element_lengths(cut.patch)[axis].min() < 0.7 * element_lengths(body.patch)[axis].min()
+
+
+def test_half_of_a_contact_is_as_wide_as_the_whole() -> None:
+    random, bounds, ends = np.random.default_rng(3), np.linspace(0.0, 1.0, 5), np.arange(5.0)
+    places, forces = 0.5 * random.random(30), random.random(30)
+    whole = extent(np.append(places, 1.0 - places), np.tile(forces / forces.sum(), 2) / 2.0, bounds, ends, False)
+    half = extent(2.0 * places, forces / forces.sum(), bounds, 0.5 * ends, False, -1)
+    assert whole == pytest.approx((2.0, half[1]), rel=1e-14)
+    assert half[0] == 2.0
+
+
+@pytest.mark.parametrize(("way", "looks"), [(2e-4, 1), (0.02, 3)])
+def test_what_short_elements_would_do_is_computed_anew_where_contact_has_changed(
+    way: float, looks: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looked: list[int] = []
+
+    def counted(*given: Any) -> np.ndarray:
+        looked.append(given[2])
+        return further(*given)
+
+    monkeypatch.setattr(long_elements, "further", counted)
+    stages = "".join(f'[[stages]]\nname="{k}"\nsteps=1\nmotions.hand.translate=[0,0,{-0.05 if k == 0 else -way}]\n' for k in range(3))
+    text = CAP[: CAP.index("stages =")].replace("YOUNG", "10").replace("ORDER", "2").replace("MANY, MANY", "5, 5") + stages
+    list(Simulation(Scene.from_toml(text).problem()).run())
+    assert len(looked) == looks

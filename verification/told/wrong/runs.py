@@ -105,7 +105,13 @@ RUNS = {
     "rolling by elements that are too long": (LOW_TYRE.replace("rotate = 30", "rotate = 22.5"), ["load step 1, the last of"]),
     "slid off": (
         staged(PAIR, (2, "[0, 0, -0.05]", "0"), (10, "[2.5, 0, 0]", "0")),
-        ["left the master", "coefficients are large of which little is over it", "wholly beside", "opened in load step 8"],
+        [
+            "too long for it",
+            "left the master",
+            "coefficients are large of which little is over it",
+            "wholly beside",
+            "opened in load step 8",
+        ],
     ),
     "slid off in one load step": (staged(PAIR, (1, DOWN, "0"), (1, "[0, 2.5, 0]", "0")), ["wholly beside"]),
     "beside from the first load step on": (staged(PAIR, (1, "[0, 2.5, 0]", "0")), ["wholly beside", "never closed"]),

@@ -49,8 +49,8 @@ def passed_through(equilibrium: Equilibrium, state: State, error: Exception) -> 
             cuts = equilibrium.problem.settings.max_cuts
             often = f", or let increments be halved more often than solver.max_cuts = {cuts}" if cuts < constants.MOST_CUTS else ""
             yield (
-                f"contact {contact.name!r}: its master is {thick:.2g} thick there, and the shortest increment is longer than that. Take "
-                f"more load steps{often}"
+                f"contact {contact.name!r}: its master is {thick:.2g} thick there, and a step of the iteration goes through it in the "
+                f"shortest increment. Take more load steps{often}"
             )
 
 

@@ -14,14 +14,14 @@ from isomortar.told.borne import Borne
 from isomortar.told.during.between_points import between_points
 from isomortar.told.during.beyond_edges import beyond_edges
 from isomortar.told.during.giving_way import Yields, giving_way
-from isomortar.told.during.long_elements import long_elements
+from isomortar.told.during.long_elements import LongElementsLook
 from isomortar.told.during.narrow import areas, bearing
 from isomortar.told.during.softness import pressed_in
 
 #: Share of the largest force of a contact below which it opens, or hardly begins: its last row is no fault of the mesh.
 LIGHT = 0.1
-#: What looks for what may be wrong with a mesh; the first that finds something tells.
-LOOKS = (bearing, between_points, beyond_edges, long_elements)
+#: What looks for what may be wrong with a mesh, before long elements; the first that finds something tells.
+LOOKS = (bearing, between_points, beyond_edges)
 
 
 class Coarse:
@@ -35,7 +35,7 @@ class Coarse:
         self._watched = dict(enumerate(equilibrium.pairs))
         self._areas = [areas(mechanics.pair, mechanics.pair.slave.area) for mechanics in equilibrium.pairs]
         self._largest = np.array([state.pressure @ area for state, area in zip(states, self._areas, strict=True)])
-        self._borne = Borne(self._problem, states)
+        self._borne, self._long = Borne(self._problem, states), LongElementsLook()
 
     def after_step(self, balance: Balance, step: int, ends: bool) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to, if it `ends` a stage: all contact of round bodies is narrow at first."""
@@ -61,7 +61,7 @@ class Coarse:
         pressure = abs(pair.field(balance.responses[number].pressure)) * (projections.found > 0)
         deep = Yields(pressed_in(equilibrium, pair, projections, pressure), np.zeros(2))
         as_they_are: Yields | None = None
-        for look in LOOKS:
+        for look in (*LOOKS, self._long):
             found = look(equilibrium, balance, number, deep)
             if found is not None and found.is_told:
                 as_they_are = as_they_are or replace(deep, ways=giving_way(equilibrium, balance, number))

@@ -19,7 +19,7 @@ from isomortar.model.pairs import Pair
 from isomortar.model.sheet import Sheet
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.solve.timing import Ledger
-from isomortar.told.during.extent import extent
+from isomortar.told.during.extent import extent, mirrored_ends
 from isomortar.told.during.giving_way import deformed_by
 from isomortar.told.during.normal_forces import normal_forces
 from isomortar.told.during.raising import finer
@@ -64,13 +64,12 @@ def coordinates_of_slave(pair: Pair, equilibrium: Equilibrium) -> FloatArray:
     sheet = Sheet.of(equilibrium.problem, pair.contact.slave)
     weights = np.ones(len(face.point))
     weights[face.within] = sheet.patch.weights[sheet.patch.face_points(sheet.face)]
-    nodes = pair.slave.shape.nodes
+    nodes, (first, second) = pair.slave.shape.nodes, sheet.directions
     places = face.control_places[nodes]
-    for axis, direction in enumerate(sheet.directions):
-        if sheet.closed[axis]:  # control points on the seam, which begin the face, end its last elements
-            low, high = direction.boundaries[[0, -1]]
-            last = places[..., axis].max(axis=1) - places[..., axis].min(axis=1) > 0.5 * (high - low)
-            places[..., axis] += (high - low) * (last[:, None] & (places[..., axis] < 0.5 * (low + high)))
+    by_node = places.reshape(len(nodes), second.order + 1, first.order + 1, 2)
+    for axis, line in enumerate((by_node[..., 0], np.swapaxes(by_node[..., 1], 1, 2))):
+        if sheet.closed[axis]:  # control points on a seam, which begin the face, end its last elements
+            line[..., -1][line[..., -1] <= line[..., 0]] = sheet.directions[axis].boundaries[-1]
     by_point = (np.repeat(of, pair.slave.per_element, axis=0) for of in (places, weights[nodes]))
     (of_points, of_weights), values = by_point, pair.slave.shape.values
     shares = values / of_weights
@@ -89,8 +88,7 @@ def _further(equilibrium: Equilibrium, balance: Balance, place: Face, at: FloatA
     own = equilibrium.numbering.of_patch(body.name, balance.positions)
     as_it_is = replace(body, patch=replace(body.patch, control_points=own))
     cut = cut_under(problem, as_it_is, place, at, np.linalg.norm(forces, axis=1))
-    couplings = math.prod(2 * direction.order + 1 for direction in cut.patch.directions)
-    if len(cut.patch.weights) * couplings > MOST:
+    if math.prod(d.count * (2 * d.order + 1) - d.order * (d.order + 1) for d in cut.patch.directions) > MOST:
         return np.nan
     try:
         was, would = (_work(problem, one, place, at, forces) for one in (as_it_is, cut))
@@ -104,9 +102,10 @@ def cut_under(problem: Problem, body: Body, place: Face, at: FloatArray, forces:
     sheet, share, patch = Sheet.of(problem, place), forces / forces.sum(), body.patch
     ends = [np.append(0.0, np.cumsum(lengths)) for lengths in element_lengths(patch)]
     narrowest = np.inf
-    for letter, direction, closed, places in zip(sheet.letters, sheet.directions, sheet.closed, at.T, strict=True):
+    mirrors = mirrored_ends(problem, place, sheet.letters)
+    for letter, direction, closed, mirror, places in zip(sheet.letters, sheet.directions, sheet.closed, mirrors, at.T, strict=True):
         axis = "uvw".index(letter)
-        middle, width = extent(places, share, direction.boundaries, ends[axis], closed)
+        middle, width = extent(places, share, direction.boundaries, ends[axis], closed, mirror)
         width = max(width, NARROWEST * float(np.diff(ends[axis]).min()))
         where = (middle - 0.5 * width, middle + 0.5 * width)
         patch = finer(patch, axis, 0, cuts(direction.boundaries, ends[axis], where, width, closed))[1]

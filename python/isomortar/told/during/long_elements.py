@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from isomortar._frozen import frozen
@@ -12,7 +14,7 @@ from isomortar.model.sheet import Sheet
 from isomortar.model.supports import BoolArray
 from isomortar.solve.equilibrium import Balance, Equilibrium
 from isomortar.told.before.dents import AT_POINTS
-from isomortar.told.during.extent import extent
+from isomortar.told.during.extent import extent, mirrored_ends
 from isomortar.told.during.giving_way import Yields
 from isomortar.told.during.indenting import coordinates_of_slave, further
 from isomortar.told.during.pulling import pulls
@@ -34,6 +36,9 @@ FINER = 1.2
 #: Share that elements of both may keep back, by the estimate, from which on it is computed what they do: where it was less forces of balls
 #: on blocks were too large by less than a tenth for it.
 SUSPECT = 0.03
+#: Share of an element by which contact may have moved along a face, and share of its width by which that may be another one, up to which
+#: what was computed of it holds: where knots lie decides, and from one to the other it changes by all that it is.
+SAME = 0.1
 #: Share of the force that this adds from which on it is told, and the largest that is: under rigid slaves it is a bound of little use.
 COSTS, LARGEST = 0.1, 1.0
 #: A direction is too coarse where it keeps back this share of what the worst one does: along the face, and across.
@@ -49,8 +54,8 @@ class SideElements:
     place : Face
     letters : tuple of str
         Of its directions along the face, and across.
-    widths : ndarray, shape (2,)
-        How wide contact is along each coordinate of the face, in elements of that.
+    middles, widths : ndarray, shape (2,)
+        Where contact is along each coordinate of the face, and how wide, in elements of that.
     kept : ndarray, shape (3,)
         Share of what the body gives way by that elements may keep back along each direction.
     softness : float
@@ -59,6 +64,7 @@ class SideElements:
 
     place: Face
     letters: tuple[str, str, str]
+    middles: FloatArray
     widths: FloatArray
     kept: FloatArray
     softness: float
@@ -84,24 +90,22 @@ class LongElements:
         Slave and master, but for a rigid plane.
     longer : bool
         Whether the master's elements are longer than the slave's.
-    further : ndarray, shape (sides,)
-        How much further sides would be pressed in by short elements; not a number of what is not known.
+    known : ndarray, shape (sides,)
+        How much further sides would be pressed in by short elements, over how far all are; not a number of what is not known.
     yields : Yields
         How far both give way.
     """
 
     sides: tuple[SideElements, ...]
     longer: bool
-    further: FloatArray
+    known: FloatArray
     yields: Yields
 
     @property
     def of_sides(self) -> FloatArray:
         """Shares of the force that elements of sides add to it, about, shape (sides,) (theory 9.15, 9.26)."""
         estimates = np.array([side.along if self.longer and side is self.sides[-1] else 0.0 for side in self.sides])
-        pressed = float(self.yields.pressed.sum())
-        known = self.further / pressed if pressed > 0.0 else np.zeros(len(self.sides))
-        alone = np.where(np.isnan(known), estimates / (1.0 - estimates), known)
+        alone = np.where(np.isnan(self.known), estimates / (1.0 - estimates), self.known)
         whole = float(alone.sum())
         return np.asarray(alone * (self.yields.of_force(whole) / whole if whole > 0.0 else 0.0))
 
@@ -120,7 +124,9 @@ class LongElements:
         worst = int(np.argmax(self.of_sides))
         side, what = self.sides[worst], ("slave", "master")[worst]
         stage = problem.stages[problem.stage_of(step)].name
-        few = [letter for letter, kept, part in zip(side.letters, side.kept, PARTS, strict=True) if kept >= part * side.kept.max()]
+        most = float(side.kept.max())
+        few = [letter for letter, kept, part in zip(side.letters, side.kept, PARTS, strict=True) if 0.0 < kept >= part * most]
+        few = few or list(side.letters[:2])
         keys = ", ".join(f"bodies.{name}.mesh.elements" for name in dict.fromkeys(face.body for face in side.place.faces))
         return (
             f"contact {contact.name!r}, load step {step}, the last of stage {stage!r}: elements of its {what} {side.place.words} are "
@@ -131,39 +137,65 @@ class LongElements:
         )
 
 
-def long_elements(equilibrium: Equilibrium, balance: Balance, number: int, yields: Yields) -> LongElements | None:
-    """How a contact that presses lies on elements of its bodies (theory 9.15, 9.26); None of what pulls."""
-    pair, projections, problem = equilibrium.pairs[number].pair, balance.kinematics[number].projections, equilibrium.problem
-    forces = pair.slave.area * np.maximum(pair.field(balance.responses[number].pressure), 0.0) * (projections.found > 0)
-    if not forces.any() or pulls(equilibrium, balance, number):
-        return None
-    share = forces / forces.sum()
-    soft = np.array([share @ part for part in softness(problem, equilibrium.numbering, pair, projections)])
-    if not soft.any():
-        return None
-    on_faces = (pair.contact.slave, coordinates_of_slave(pair, equilibrium)), (pair.contact.master, projections.xi)
-    places = [(place, at) for place, at in on_faces if isinstance(place, Face)]
-    sides = tuple(_side(problem, *place, share, part) for place, part in zip(places, soft / soft.sum(), strict=False))
-    lengths = [Sheet.of(problem, place).element_size for place, _ in places]
-    longer = problem.images == 1 and lengths[-1] > FINER * lengths[0]
-    known = np.zeros(len(sides))
-    if sum(side.suspect for side in sides) > SUSPECT:  # forces at single points press in the further, the shorter elements are
-        at_points = pair.contact.enforcement in AT_POINTS
-        known = np.full(len(sides), np.nan) if at_points else further(equilibrium, balance, number, places)
-    return LongElements(sides, longer, known, yields)
+class LongElementsLook:
+    """Looks for elements that are too long for a contact; what is computed of one serves as long as it lies about where it did."""
+
+    def __init__(self) -> None:
+        self._looked = dict[int, tuple[FloatArray, FloatArray]]()
+
+    def __call__(self, equilibrium: Equilibrium, balance: Balance, number: int, yields: Yields) -> LongElements | None:
+        """How a contact that presses lies on elements of its bodies (theory 9.15, 9.26); None of what pulls."""
+        pair, projections, problem = equilibrium.pairs[number].pair, balance.kinematics[number].projections, equilibrium.problem
+        forces = pair.slave.area * np.maximum(pair.field(balance.responses[number].pressure), 0.0) * (projections.found > 0)
+        if not forces.any() or pulls(equilibrium, balance, number):
+            return None
+        share = forces / forces.sum()
+        soft = np.array([share @ part for part in softness(problem, equilibrium.numbering, pair, projections)])
+        if not soft.any():
+            return None
+        on_faces = (pair.contact.slave, coordinates_of_slave(pair, equilibrium)), (pair.contact.master, projections.xi)
+        places = [(place, at) for place, at in on_faces if isinstance(place, Face)]
+        sides = tuple(_side(problem, *place, share, part) for place, part in zip(places, soft / soft.sum(), strict=False))
+        lengths = [Sheet.of(problem, place).element_size for place, _ in places]
+        longer = problem.images == 1 and lengths[-1] > FINER * lengths[0]
+        known = np.zeros(len(sides))
+        if sum(side.suspect for side in sides) > SUSPECT:  # forces at single points press in the further, the shorter elements are
+            at_points = pair.contact.enforcement in AT_POINTS
+            known = known + np.nan if at_points else self._known(equilibrium, balance, number, yields, sides, places)
+        return LongElements(sides, longer, known, yields)
+
+    def _known(
+        self,
+        equilibrium: Equilibrium,
+        balance: Balance,
+        number: int,
+        yields: Yields,
+        sides: Sequence[SideElements],
+        places: Sequence[tuple[Face, FloatArray]],
+    ) -> FloatArray:
+        """How much further sides would be pressed in, over how far all are; as it was, where contact lay and was as wide as now."""
+        lies = np.concatenate([values for side in sides for values in (side.middles, side.widths)])
+        if number in self._looked and np.all(np.abs(lies - self._looked[number][0]) < SAME * np.maximum(1.0, lies)):
+            return self._looked[number][1]
+        pressed = float(yields.pressed.sum())
+        found = further(equilibrium, balance, number, places) / pressed if pressed > 0.0 else np.zeros(len(sides))
+        self._looked[number] = lies, found
+        return found
 
 
 def _side(problem: Problem, place: Face, at: FloatArray, share: FloatArray, softness: float) -> SideElements:
     """A side of a contact whose force is at some coordinates, by shares of it."""
     sheet = Sheet.of(problem, place)
-    sides = zip(at.T, sheet.directions, sheet.closed, strict=True)
-    widths = np.array([extent(places, share, d.boundaries, np.arange(d.elements + 1.0), closed)[1] for places, d, closed in sides])
+    along = zip(at.T, sheet.directions, sheet.closed, mirrored_ends(problem, place, sheet.letters), strict=True)
+    found = [extent(one, share, d.boundaries, np.arange(d.elements + 1.0), closed, mirror) for one, d, closed, mirror in along]
+    middles, widths = np.array(found).T
     narrow = np.divide(1.0, widths, out=np.full(2, np.inf), where=widths > 0.0)
     narrow[widths > ALL * np.array([direction.elements for direction in sheet.directions])] = 0.0
     orders = np.array([direction.order for direction in sheet.directions])
-    along = KEEPS * np.minimum(1.0, SMOOTH / orders) * np.maximum(0.0, narrow - FREE)
-    kept = np.append(along, _across(problem, place, widths, narrow > 0.0))
-    return SideElements(place, (*sheet.letters, place.face[0]), widths, np.minimum(MOST, kept), softness)
+    kept = np.append(
+        KEEPS * np.minimum(1.0, SMOOTH / orders) * np.maximum(0.0, narrow - FREE), _across(problem, place, widths, narrow > 0.0)
+    )
+    return SideElements(place, (*sheet.letters, place.face[0]), middles, widths, np.minimum(MOST, kept), softness)
 
 
 def _across(problem: Problem, place: Face, widths: FloatArray, narrow: BoolArray) -> float:
@@ -173,5 +205,7 @@ def _across(problem: Problem, place: Face, widths: FloatArray, narrow: BoolArray
     counts = widths > 0.0 if order == 1 else narrow & (widths > 0.0)
     if len(place.faces) > 1 or not counts.any():
         return 0.0
-    high = float(element_lengths(patch)[axis][-int(place.face[1])] / (sheet.element_size * widths[counts].min()))
+    lengths = element_lengths(patch)
+    wide = widths * [np.median(lengths["uvw".index(letter)]) for letter in sheet.letters]
+    high = float(lengths[axis][-int(place.face[1])] / wide[counts].min())
     return LINEAR * high if order == 1 else ACROSS * (SMOOTH / order) ** 2 * max(0.0, high - FREE)
