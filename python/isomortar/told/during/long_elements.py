@@ -174,8 +174,9 @@ class LongElementsLook:
         places: Sequence[tuple[Face, FloatArray]],
     ) -> FloatArray:
         """How much further sides would be pressed in, over how far all are; as it was, where contact lay and was as wide as now."""
-        lies = np.concatenate([values for side in sides for values in (side.middles, side.widths)])
-        if number in self._looked and np.all(np.abs(lies - self._looked[number][0]) < SAME * np.maximum(1.0, lies)):
+        lies = np.array([(side.middles, side.widths) for side in sides])
+        within = SAME * np.array([(np.ones(2), np.maximum(1.0, side.widths)) for side in sides])
+        if number in self._looked and np.all(np.abs(lies - self._looked[number][0]) < within):
             return self._looked[number][1]
         pressed = float(yields.pressed.sum())
         found = further(equilibrium, balance, number, places) / pressed if pressed > 0.0 else np.zeros(len(sides))
