@@ -33,8 +33,8 @@ ACROSS, LINEAR = 0.06, 0.24
 ALL = 0.8
 #: Elements of the master are too long for a finer slave: longer than its own by this factor. Where they are not both are too long.
 FINER = 1.2
-#: Share that elements of both may keep back, by the estimate, from which on it is computed what they do: where it was less forces of balls
-#: on blocks were too large by less than a tenth for it.
+#: Share that elements of both may keep back, by the estimate, from which on it is computed what they do: rough, that takes half a second.
+#: Below it some forces of bowls on blocks were 11 to 18 % too large, and whether for their elements or for few rows is not known.
 SUSPECT = 0.03
 #: Share of an element by which contact may have moved along a face, and share of its width by which that may be another one, up to which
 #: what was computed of it holds: where knots lie decides, and from one to the other it changes by all that it is.

@@ -1,4 +1,4 @@
-"""Bodies of a higher order along some directions, of the same shape."""
+"""Bodies of a higher order, or of shorter elements, along some directions, of the same shape."""
 
 from __future__ import annotations
 
