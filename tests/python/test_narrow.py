@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 from isomortar.solve.equilibrium import Balance
 from isomortar.told.during.coarse import Coarse
+from isomortar.told.during.narrow import _between
 
 SCENE = """
 format = 1
@@ -34,3 +36,18 @@ def test_round_off_is_not_narrow(share: float, said: int) -> None:
     responses = [replace(response, pressure=share * response.pressure) for response in balance.responses]
     coarse = Coarse(simulation.equilibrium, simulation.equilibrium.initial_state().contacts)
     assert len(list(coarse.after_step(replace(balance, responses=responses), 1, True))) == said
+
+
+@pytest.mark.parametrize(
+    ("sums", "lies"),
+    [
+        ((0, 1, 1, 0, 0), True),
+        ((0, 0, 0.42, 0.58), True),
+        ((0, 0, 0.38, 0.62), False),
+        ((1, 0, 1), False),  # a beam that lies on its ends
+        ((0, 2, 0, 0), False),
+        ((1,), False),
+    ],
+)
+def test_contact_lies_between_two_rows(sums: tuple[float, ...], lies: bool) -> None:
+    assert _between(np.array(sums, dtype=float)) == lies

@@ -89,7 +89,7 @@ BOWL = """
 format = 1
 materials.soft = { young = 10, poisson = 0.3 }
 bodies.cap.geometry = { kind = "bowl", centre = [0.05, 0.02], half_width = 0.375, bottom = 0, rise = 0.12, top = 0.5 }
-bodies.cap.mesh = { order = [2, 2, 1], elements = [6, 6, 3] }
+bodies.cap.mesh = { order = [2, 2, 1], elements = [10, 10, 3] }
 bodies.block.geometry = { kind = "box", lower = [-0.6, -0.6, -0.5], upper = [0.7, 0.65, 0] }
 bodies.block.mesh = { order = ORDER, elements = [MANY, MANY, 2] }
 contacts.c = { slave = "cap.w0", master = "block.w1", friction = 0, projection = "closest" }
@@ -113,6 +113,35 @@ def by_knots() -> dict[str, float]:
     said, force = pressed(BOWL, 2, 4, 10)
     well, true = pressed(BOWL, 2, 9, 10)
     return {"said": float(len(said)), "off": force / true - 1.0, "well": float(len(well))}
+
+
+@case(
+    claim="A slave that bears contact by two rows of its points alike, between which that lies, on a softer block is told, along both "
+    "directions, and by about as much as the force is too large; of a finer one nothing is said.",
+    tier="gate",
+    grid={"order": (2, 3)},
+    bounds={
+        "said": Bound(1.0, 1.0, "definition: sentences of six elements of order 2, or seven of order 3"),
+        "off": Bound(at_least=0.1, reason="definition: share by which the force of these is too large, or there is nothing to tell of"),
+        "told over off": Bound(at_most=2.0, at_least=0.5, reason="definition: an estimate, of which the order of magnitude counts"),
+        "fine": Bound(0.0, 0.0, "definition: sentences of twelve elements"),
+    },
+)
+def between_rows(order: int) -> dict[str, float]:
+    """What is said of a slave that has rows on both sides of contact, on a block of as many elements, and of a fine one."""
+    scene = BOWL.replace("-0.04", "-0.05").replace("rise = 0.12", "rise = 0.2").replace("[2, 2, 1]", f"[{order}, {order}, 2]")
+    softer = 'materials.softer = { young = 3, poisson = 0.3 }\nbodies.block.material = "softer"\nbodies.cap.material = "soft"\n'
+    scene = scene.replace("bodies.cap.geometry", f"{softer}bodies.cap.geometry")
+    many = 4 + order
+    said, force = pressed(scene.replace("10, 10", f"{many}, {many}"), 2, many, 10)
+    fine, true = pressed(scene.replace("10, 10", "12, 12"), 2, 12, 10)
+    off = force / true - 1.0
+    return {
+        "said": float([found.group(1, 3) for found in said] == [("slave cap.w0", "u and v")]),
+        "off": off,
+        "told over off": 0.01 * float(said[0][2]) / off if said else 0.0,
+        "fine": float(len(fine)),
+    }
 
 
 @case(

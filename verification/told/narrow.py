@@ -364,7 +364,8 @@ def along_which() -> dict[str, float]:
     """How many."""
     problem, wrong = Scene.load("press").problem(), 0
     for rows, counts, poles, along in FEW:
-        found = narrow.Bearing(np.array(rows), counts, np.full(2, 4.0), (False, False), poles, True, 0.0, Yields(np.zeros(2), np.zeros(2)))
+        none, yields = (False, False), Yields(np.zeros(2), np.zeros(2))
+        found = narrow.Bearing(np.array(rows), counts, np.full(2, 4.0), none, poles, none, True, 0.0, yields)
         said = found.sentence(problem, problem.contacts[0], 1)
         wrong += f"many elements or more along {along} (" not in said
     return {"wrong": float(wrong)}

@@ -20,8 +20,6 @@ from isomortar.told.during.softness import pressed_in
 
 #: Share of the largest force of a contact below which it opens, or hardly begins: its last row is no fault of the mesh.
 LIGHT = 0.1
-#: What looks for what may be wrong with a mesh, before long elements; the first that finds something tells.
-LOOKS = (bearing, between_points, beyond_edges)
 
 
 class Coarse:
@@ -35,7 +33,8 @@ class Coarse:
         self._watched = dict(enumerate(equilibrium.pairs))
         self._areas = [areas(mechanics.pair, mechanics.pair.slave.area) for mechanics in equilibrium.pairs]
         self._largest = np.array([state.pressure @ area for state, area in zip(states, self._areas, strict=True)])
-        self._borne, self._long = Borne(self._problem, states), LongElementsLook()
+        self._borne = Borne(self._problem, states)
+        self._looks = (bearing, between_points, beyond_edges, LongElementsLook())  # the first that finds something tells
 
     def after_step(self, balance: Balance, step: int, ends: bool) -> Iterator[str]:
         """Warnings that the end of a load step gives rise to, if it `ends` a stage: all contact of round bodies is narrow at first."""
@@ -61,7 +60,7 @@ class Coarse:
         pressure = abs(pair.field(balance.responses[number].pressure)) * (projections.found > 0)
         deep = Yields(pressed_in(equilibrium, pair, projections, pressure), np.zeros(2))
         as_they_are: Yields | None = None
-        for look in (*LOOKS, self._long):
+        for look in self._looks:
             found = look(equilibrium, balance, number, deep)
             if found is not None and found.is_told:
                 as_they_are = as_they_are or replace(deep, ways=giving_way(equilibrium, balance, number))

@@ -30,6 +30,11 @@ ENOUGH, ALL = 2.5, 0.8
 COSTS = 0.1
 #: Depth over what forces press in up to which it costs nothing, and what is added below the line: fitted to the same scenes.
 FREE, ADDED = 0.5, 2.0
+#: Rows up to which there are two, and share of the force that both of two side by side have at the least where contact lies between them.
+TWO, ALIKE = 2.05, 0.4
+#: Share of the force that this adds for each direction in which it is so, of smooth functions and of such with kinks, and the depths over
+#: what forces press in between which it does, all of it between the inner ones: read off 500 forces of balls and bowls on blocks.
+BETWEEN, KINKED, DEPTHS = 0.04, 0.06, (0.05, 0.1, 0.4, 0.6)
 #: Shares of the force that narrow contact costs: on one row of averages, and by other constraints, of which balls on blocks tell no better,
 #: mostly and at the worst: their forces act on few points, which give way far more than what is pressed in by theory.
 FEW, OTHERWISE, WORST = 0.2, "50 %, at the worst by 200 %", 2.0
@@ -51,6 +56,8 @@ class Bearing:
         Whether functions of the face have kinks along each coordinate.
     round : tuple of bool
         Whether it is a pole, round which a coordinate goes, that bears most: a point, however many rows there are along that.
+    between : tuple of bool
+        Whether it lies between two rows side by side along each coordinate, which bear it alike.
     averages : bool
         Whether constraints are on averages.
     depth : float
@@ -64,16 +71,29 @@ class Bearing:
     least: FloatArray
     kinks: tuple[bool, bool]
     round: tuple[bool, bool]
+    between: tuple[bool, bool]
     averages: bool
     depth: float
     yields: Yields
 
     @property
+    def ratio(self) -> float:
+        """Depth over how far bodies are pressed in."""
+        pressed = float(self.yields.pressed.sum())
+        return self.depth / pressed if pressed > 0.0 else 0.0
+
+    @property
     def costs(self) -> float:
         """Share of the force that depths between control points cost averages, by an estimate; below zero: nothing (theory 9.10)."""
-        pressed = float(self.yields.pressed.sum())
-        ratio = self.depth / pressed if pressed > 0.0 else 0.0
-        return -self.yields.of_force((FREE - ratio) / (ratio + ADDED))
+        return -self.yields.of_force((FREE - self.ratio) / (self.ratio + ADDED))
+
+    @property
+    def adds(self) -> FloatArray:
+        """Shares that forces are too large by as contact lies between two rows along either coordinate, shape (2,) (theory 9.27)."""
+        if not self.averages:
+            return np.zeros(2)
+        each = np.where(self.kinks, KINKED, BETWEEN) * self.between
+        return np.asarray(each * np.interp(self.ratio, DEPTHS, (0.0, 1.0, 1.0, 0.0)))
 
     @property
     def is_told(self) -> bool:
@@ -138,13 +158,16 @@ def bearing(equilibrium: Equilibrium, balance: Balance, number: int, yields: Yie
     borne = forces(pair, balance.responses[number].pressure, kinematics.projections)
     (first, round_first), (second, round_second) = (_sums(pair.places, borne, axis) for axis in (0, 1))
     rows = np.array([np.sum(sums) ** 2 / (sums @ sums) for sums in (first, second)])
+    whole = equilibrium.problem.images == 1  # beside planes of symmetry there are others
+    between = [whole and own < min(TWO, ALL * len(sums)) and _between(sums) for own, sums in zip(rows, (first, second), strict=True)]
     directions = Sheet.of(equilibrium.problem, pair.contact.slave).directions
     u, v = (direction.order == 1 or direction.family == "L" for direction in directions)
     round_poles, counts = (round_first, round_second), (len(first), len(second))
     by_element = [count / direction.elements for count, direction in zip(counts, directions, strict=True)]
     least = _least(equilibrium.problem, pair.contact, np.array(by_element))
     depth = _depth(pair, balance, number)
-    return Bearing(rows, counts, least, (u, v), round_poles, pair.contact.enforcement == "mortar", depth, yields)
+    averages = pair.contact.enforcement == "mortar"
+    return Bearing(rows, counts, least, (u, v), round_poles, (between[0], between[1]), averages, depth, yields)
 
 
 def _least(problem: Problem, contact: Contact, by_element: FloatArray) -> FloatArray:
@@ -154,6 +177,12 @@ def _least(problem: Problem, contact: Contact, by_element: FloatArray) -> FloatA
     if contact.enforcement == "kts" and problem.images == 1:
         return np.asarray(np.maximum(ROWS, SHARE_OF_ELEMENT * by_element))
     return np.full(2, ROWS)
+
+
+def _between(sums: FloatArray) -> bool:
+    """Whether two rows side by side bear alike (theory 9.27)."""
+    pairs = np.minimum(sums[:-1], sums[1:])
+    return bool(pairs.max(initial=0.0) >= ALIKE * sums.sum())
 
 
 def _sums(places: FloatArray, borne: FloatArray, axis: int) -> tuple[FloatArray, bool]:
