@@ -114,6 +114,9 @@ MAX_HALVINGS = 5
 CIRCLING = 4
 #: The last iterates in which a front gets on, of what is active or slips: then a loop has more tangents than are allowed else.
 ADVANCING = 10
+#: What is left, in all of these, below which a loop has as many more: belts round a drum that are pulled back took 55 to 120 tangents, as
+#: one constraint after another stuck or slipped, and by shorter increments they took as many.
+CLOSE = 1e-2
 #: Up to so many times as many tangents: of layers and beams that lift off each other fronts take 30 to 60, however short increments are.
 MOST_TANGENTS = 4
 #: What is left is the same within this share: what creeps away from a circle, and may still converge, differs by more.

@@ -72,12 +72,16 @@ class Trail:
     def advances(self) -> bool:
         """Whether more or less is active, or slips, than ever before the last iterates: a front that is not there yet (theory 6.11).
 
-        Where as much is left as there are forces, nothing gets on, and what more iterates come to is chance.
+        Where as much is left as there are forces, nothing gets on, and what more iterates come to is chance. Where little is left, most
+        constraints have found their states, and the others will.
         """
         before, last = np.split(np.array(self._counts[constants.ACTIVE_SET_ITERATIONS :]), [-constants.ADVANCING])
-        if not len(before) or not np.max(self.merits[-constants.ADVANCING :]) < 1.0:
+        left = np.max(self.merits[-constants.ADVANCING :])
+        if not len(before) or not left < 1.0:
             return False
-        return bool(np.any(last.min(axis=0) < before.min(axis=0)) or np.any(last.max(axis=0) > before.max(axis=0)))
+        return bool(
+            left < constants.CLOSE or np.any(last.min(axis=0) < before.min(axis=0)) or np.any(last.max(axis=0) > before.max(axis=0))
+        )
 
     def toggling(self, pairs: Sequence[PairMechanics]) -> str:
         """What changed to and fro in the last iterations, as a part of a sentence."""
