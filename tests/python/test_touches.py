@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from isomortar.told.after import overcome, tipping
-from isomortar.told.after.limit_load import Touch, groups_of
+from isomortar.told.after.limit_load import Touch, groups_of, pressed_bed
 
 WAY = np.array([1.0])
 
@@ -133,3 +133,40 @@ def test_a_finer_slave_is_advised_where_it_bears_more_of_a_turn(
     said = tipping._said(equilibrium, SimpleNamespace(contacts=[None, None], positions=None), bodies, WAY)  # type: ignore[arg-type]
     assert (tipping.FINER in said) == (turns and any(bears))
     assert "contact 'a' and 'b'" in said
+
+
+@pytest.mark.parametrize("unit", [1.0, 30.0, 3e-2, 1e-2])
+@pytest.mark.parametrize("aside", [0.0, 0.1, -0.15])
+def test_a_bed_of_springs_bears_a_load_beside_its_middle_as_beams_do(aside: float, unit: float) -> None:
+    """Pressures F / A + F e x / I within the middle third, whatever a motion's turn is measured by; a narrow face is turned as well."""
+    x, weight = np.linspace(-0.5, 0.5, 9), np.array([0.5, *[1.0] * 7, 0.5])
+    closing = weight[:, None] * np.column_stack([np.ones(9), unit * x])
+    bed = Touch(SimpleNamespace(), np.ones(9, dtype=bool), weight, closing, np.zeros((9, 2, 2)), np.zeros((0, 2)), weight / weight.sum())  # type: ignore[arg-type]
+    way = pressed_bed([bed], 7.0 * np.array([1.0, unit * aside]), np.zeros((2, 0)))
+    assert way is not None
+    np.testing.assert_allclose(bed.pressures(way), 7.0 * (1.0 / weight.sum() + aside * x / (weight @ x**2)), rtol=1e-8)
+
+
+@pytest.mark.parametrize("goes", [0, 1])
+@pytest.mark.parametrize(
+    ("share", "speed", "meets"), [(0.5, 1.0, True), (2.0, 1.0, False), (0.3, 0.5, True), (0.9, 0.5, False), (0.001, 0.05, False)]
+)
+def test_what_a_motion_closes_is_met_on_the_way_of_the_size_of_what_goes(
+    monkeypatch: pytest.MonkeyPatch, goes: int, share: float, speed: float, meets: bool
+) -> None:
+    """Other bodies, smaller or larger, that do not go have no part in it; nor have points without a foot, nor what touches."""
+    sizes = np.array([1.0, 50.0])
+    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.5, 0.2]])
+    pieces = [(SimpleNamespace(patch=SimpleNamespace(control_points=size * corners)),) for size in sizes]
+    motions = [SimpleNamespace(piece=k, displacement=4.0 * np.outer(np.eye(2)[k], [0.0, 0.0, 1.0])) for k in range(2)]
+    pair, rubs = Named("ahead"), Named("below")
+    for one in (pair, rubs):
+        one.pair.area = 1.0
+        one.kinematics = lambda positions, _: SimpleNamespace(control=positions[goes, 2])
+    gap = share * sizes[goes]
+    monkeypatch.setattr(tipping, "heights", lambda _, z: np.array([-np.inf, speed * z - gap, speed * z - 1e3 * gap]))
+    equilibrium = SimpleNamespace(pairs=[rubs, pair], numbering=SimpleNamespace(pieces=pieces))
+    state: Any = SimpleNamespace(contacts=[None, None], positions=np.zeros((2, 3)))
+    way = 0.3 * np.eye(2)[goes]
+    met = tipping._met(equilibrium, state, [SimpleNamespace(pair=rubs)], motions, way)  # type: ignore[arg-type,list-item]
+    assert list(met) == (["ahead"] if meets else [])
