@@ -15,7 +15,7 @@ bodies.block = { geometry = { kind = "box", lower = [0, 0, 0], upper = [1, 0.6, 
 """
 #: Squeezed between a clamped side and one that slides along the plane as it moves; pushed along the plane by its side, then left, or
 #: pressed on; pushed by a side that is held across as well; beside a support whose direction is neither in the tilted plane nor across
-#: it; a slice in plane strain.
+#: it; by forces, or a moment, on a side that takes the edge of the face in contact along.
 SCENES = {
     "clamped": """
         contacts.floor = { slave = "block.w0", plane = { point = [0, 0, 0] }, friction = 0.3 }
@@ -71,6 +71,24 @@ SCENES = {
         supports.top = { face = "block.w1", components = ["y", "z"] }
         supports.side = { face = "block.u1", components = ["x"] }
         stages = [{ name = "press", steps = 3, motions.top.translate = [0, 0, -0.05] }]
+    """,
+    "pressed and pushed at its side": """
+        contacts.floor = { slave = "block.w0", plane = {}, friction = 0.3 }
+        supports.side = { face = "block.u0", components = ["y"], force = { x = 0.02, z = -0.2 } }
+        supports.end.face = "block.u1"
+        stages = [{ name = "press", steps = 2 }]
+    """,
+    "pressed and pushed at its side, on a rigid body": """
+        bodies.table = { rigid = true, geometry = { kind = "box", lower = [-1, -1, -1], upper = [2, 2, 0] }, mesh.order = 1 }
+        contacts.floor = { slave = "block.w0", master = "table.w1", friction = 0.3 }
+        supports.side = { face = "block.u0", force = { x = 0.02, y = 0.01, z = -0.2 } }
+        supports.end.face = "block.u1"
+        stages = [{ name = "press", steps = 2 }]
+    """,
+    "turned at its side": """
+        contacts.floor = { slave = "block.w0", plane = {}, friction = 0.3 }
+        supports.side = { face = "block.u0", components = ["x", "y", "z"], moment = 0.02, centre = [0, 0, 0.2], axis = [0, 1, 0] }
+        stages = [{ name = "turn", steps = 2 }]
     """,
 }
 TIGHT = ("solver.newton_tolerance=1e-11", "solver.complementarity_tolerance=1e-11")

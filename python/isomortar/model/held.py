@@ -39,14 +39,15 @@ class Held:
     pushed : ndarray, shape (test functions, 2)
         Directions in which supports push along the plane in this increment: unit vectors, or zero.
     rests : ndarray of bool, shape (test functions,)
-        Where supports that hold the normal have them just touch a rigid plane, or hold anything beside a rigid body: if they bear, their
-        conditions may follow from the others'.
+        Where supports that hold the normal have them just touch a rigid plane, or hold anything beside a rigid body, or plates take control
+        points along the normal: if they bear, their conditions may follow from the others'.
     still : ndarray of int32, shape (test functions,)
         1 where supports that have moved prescribe every direction along a rigid plane, here and round about, and move none of it in this
         increment: slips and balance tell nothing of the traction, which stays as it is, as far as friction bears it.
     moved : ndarray of bool, shape (test functions,)
         Where a component along the plane is prescribed, and by now has moved, or any beside a rigid body: slips there are given, so that
-        they tell nothing of the traction along it while that sticks, nor of the one across while it slips.
+        they tell nothing of the traction along it while that sticks, nor of the one across while it slips. Or where plates take control
+        points along the plane: of one slip several tractions are not told.
     idle : ndarray of bool, shape (test functions,)
         Where supports hold a control point wholly, and an edge of the master that it is on: it bears nothing, however deep it is.
     """
@@ -103,7 +104,7 @@ def held_by(supports: Supports, pair: Pair, start: FloatArray, time: float) -> H
     else:
         _beside_surface(held, pair, start, supports.held & ~supports.moved(time))
         if pair.rigid_master:  # which way its normals go is known where feet are found: whatever is held may be what they press along
-            held.rests[:] = held.moved[:] = pair.all_carriers(supports.held).any(axis=1)
+            held.rests[:] = held.moved[:] = pair.all_carriers(supports.held | supports.together).any(axis=1)
         else:
             _at_held_edge(held, supports, pair, start, time)
     return held
@@ -128,6 +129,9 @@ def _beside_plane(held: Held, supports: Supports, pair: Pair, start: FloatArray,
         held.pushed[i] = along / (np.linalg.norm(along) or 1.0)
         held.moved[i] = bool(np.any(np.linalg.norm(tangents[prescribed & moved], axis=1) > constants.NO_PART))
         given[i] = np.all(np.linalg.norm(tangents[~prescribed], axis=1) <= constants.NO_PART)
+    along = pair.all_carriers(supports.together)
+    held.rests[:] |= np.linalg.norm(along * normal, axis=1) > constants.NO_PART
+    held.moved[:] |= np.any(along[:, :, None] & (np.abs(tangents) > constants.NO_PART), axis=(1, 2))
     alone = pair.neighbour_matrix @ (~given).astype(np.int32) == 0
     held.still[:] = given & alone & held.moved & ~np.any(held.pushed, axis=1)
 

@@ -60,6 +60,8 @@ class Supports:
         Control points of plates that turn.
     held : ndarray of bool, shape (control points, 3)
         Components that are prescribed.
+    together : ndarray of bool, shape (control points, 3)
+        Components in which plates take their control points along.
     balanced : ndarray of bool, shape (control points, 3)
         Where forces that are out of balance stand, as `unbalanced` has them.
     points : list of ndarray of int
@@ -78,6 +80,7 @@ class Supports:
         self._released: FloatArray | None = None
         self._seen: WeakKeyDictionary[Pattern, Seen] = WeakKeyDictionary()
         self.shares = self._shares()
+        self.together = self._taken_along()
         self.held = self._prescribed()
         self.prescribed = np.flatnonzero(self.held)
         self._number()
@@ -86,15 +89,21 @@ class Supports:
         """Numbers of the supports that hold in a stage."""
         return tuple(k for k, support in enumerate(self._problem.supports) if support.holds(stage))
 
+    def _taken_along(self) -> BoolArray:
+        """See `together`."""
+        together = np.zeros((self._numbering.count, 3), dtype=bool)
+        for plate in self.plates:
+            for component in (*plate.pressed, *plate.across):
+                together[plate.points, component] = True
+        return together
+
     def _prescribed(self) -> BoolArray:
         """See `held`."""
         held, problem = np.zeros((self._numbering.count, 3), dtype=bool), self._problem
         for body in problem.bodies:
             held[self._numbering.points[body.name]] |= body.rigid
         turned = {plate.support: plate.across for plate in self.plates}
-        for plate in self.plates:
-            for component in (*plate.pressed, *plate.across):
-                held[plate.points, component] = False
+        held[self.together] = False
         for k in self.present:
             for component in problem.supports[k].components:
                 held[self.points[k], component] |= component not in turned.get(k, ())
