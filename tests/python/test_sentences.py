@@ -27,6 +27,7 @@ from told.in_itself import STRIP, wound
 from told.long_elements import CAP
 from told.mirrored import of_half
 from told.narrow import BALL, BALLS, STRIPS, depth, strip
+from told.on_areas import BALL as BY_AREA
 from told.other_faces import INTO_A_WALL
 from told.passing import SCENE as BENT
 from told.pivoting import FLAT as TURNED
@@ -245,6 +246,7 @@ def along_the_way(_: pytest.MonkeyPatch) -> Told:
         "one row of constraints": (BALLS["constraints at knots"][0], (*BALLS["constraints at knots"][1], depth(0.025))),
         "turns within an element": (TURNED, ()),
         "rolls": (ROLLED, ()),
+        "by area": (BY_AREA, ()),
         "held inside": (HELD_INSIDE, ()),
         "between points": (CROSSED, crossed("greville", 12, 13)),
         "blind between points": (BALL, (depth(0.03), 'contacts.c.enforcement="greville"', *ORDER_3)),

@@ -89,10 +89,10 @@ def pivot(mechanics: PairMechanics, balance: Balance, number: int) -> Pivot:
     by_points = float(bears @ np.sqrt(np.maximum(squares, 0.0)))
     taken = float(np.sum((response.traction * control.slip)[response.state > 0]))
     lost = 1.0 - taken / by_points if by_points > 0.0 else 0.0
-    return Pivot(lost, _turns(pair, balance.positions, kinematics.projections, bears) if lost > LOST else 0.0)
+    return Pivot(lost, turning(pair, balance.positions, kinematics.projections, bears) if lost > LOST else 0.0)
 
 
-def _turns(pair: Pair, positions: FloatArray, projections: _bindings.Projections, weights: FloatArray) -> float:
+def turning(pair: Pair, positions: FloatArray, projections: _bindings.Projections, weights: FloatArray) -> float:
     """Share of the slips' squares about their mean that the nearest turn of all of them has, with weights of points (theory 9.21)."""
     acts = weights > 0.0
     share = weights[acts] / weights[acts].sum()

@@ -18,6 +18,7 @@ from isomortar.told.during.inside_out import InsideOut
 from isomortar.told.during.leaving import Leaving
 from isomortar.told.during.lost import LostDigits
 from isomortar.told.during.mirrored import Mirrored
+from isomortar.told.during.on_areas import OnAreas
 from isomortar.told.during.other_faces import OtherFaces
 from isomortar.told.during.passing import Passing
 from isomortar.told.during.pivoting import Pivoting
@@ -52,6 +53,7 @@ class Watches:
         self._mirrored, self._shrunk, self._bending = Mirrored(equilibrium), Shrunk(equilibrium), Bending(equilibrium)
         self._coarse, self._advice = Coarse(equilibrium, states), StepAdvice(problem, step, states)
         self._pivoting, self._rolling, self._held_inside = Pivoting(equilibrium), Rolling(equilibrium), HeldInside(equilibrium)
+        self._on_areas = OnAreas(equilibrium)
         self._leaving = Leaving([mechanics.pair for mechanics in equilibrium.pairs], states)
         self._of_stages = [watch for watch in (Passing(problem), OtherFaces(problem), Behind(problem), InItself(problem)) if watch.needed]
 
@@ -91,6 +93,7 @@ class Watches:
         if ends:
             yield from self._bending.after_stage(balance, step)
             yield from self._held_inside.after_stage(balance, step)
+            yield from self._on_areas.after_stage(balance, step)
         if ends and self._of_stages:
             deformed = self._equilibrium.numbering.deformed(balance.positions)
             for watch in self._of_stages:
