@@ -130,7 +130,8 @@ def _beside_plane(held: Held, supports: Supports, pair: Pair, start: FloatArray,
         held.moved[i] = bool(np.any(np.linalg.norm(tangents[prescribed & moved], axis=1) > constants.NO_PART))
         given[i] = np.all(np.linalg.norm(tangents[~prescribed], axis=1) <= constants.NO_PART)
     along = pair.all_carriers(supports.together)
-    held.rests[:] |= np.linalg.norm(along * normal, axis=1) > constants.NO_PART
+    pressed = np.linalg.norm(along * normal, axis=1) > constants.NO_PART
+    held.rests[:] |= pressed & ~pressed.all()  # of a whole face no pressure is told
     held.moved[:] |= np.any(along[:, :, None] & (np.abs(tangents) > constants.NO_PART), axis=(1, 2))
     alone = pair.neighbour_matrix @ (~given).astype(np.int32) == 0
     held.still[:] = given & alone & held.moved & ~np.any(held.pushed, axis=1)
