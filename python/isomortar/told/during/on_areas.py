@@ -77,7 +77,7 @@ def lacking(mechanics: PairMechanics, balance: Balance, number: int) -> float:
 
 
 def _as_one(pair: Pair, positions: FloatArray, projections: Projections, weights: FloatArray) -> float:
-    """Share of the slips' squares in the last increment that one way of all, or one turn, has, with weights of points."""
+    """Share of the slips' squares in the last increment that one way of all, or one turn, has, with weights of points (theory 9.29)."""
     weights = weights * (projections.slips > 0)
     slips = slip_vectors(pair, positions, projections)
     squares = float(weights @ np.square(slips).sum(axis=1))
