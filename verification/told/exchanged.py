@@ -48,6 +48,22 @@ QUIET = {
 
 #: Another contact, of the same faces the other way round.
 BOTH_WAYS = 'contacts.d = { slave = "punch.w0", master = "plate.w1" }\n'
+#: Two blocks on the plate, which are joined, or are not, each in a contact of its own.
+GLUE = 'glue = [["one.u1", "other.u0"]]\n'
+HALVES = f"""
+format = 1
+{GLUE}bodies.plate.geometry = {{ kind = "box", lower = [-1, -1, -0.5], upper = [1, 1, 0] }}
+bodies.plate.mesh = {{ order = [2, 2, 1], elements = [5, 6, 1] }}
+bodies.one.geometry = {{ kind = "box", lower = [-0.4, -0.3, 0], upper = [0, 0.3, 0.5] }}
+bodies.one.mesh.elements = [2, 2, 1]
+bodies.other.geometry = {{ kind = "box", lower = [0, -0.3, 0], upper = [0.4, 0.3, 0.5] }}
+bodies.other.mesh.elements = [2, 2, 1]
+contacts.one = {{ slave = "plate.w1", master = "one.w0" }}
+contacts.other = {{ slave = "plate.w1", master = "other.w0" }}
+supports = {{ plate.face = "plate.w0", one.face = "one.w1", other.face = "other.w1" }}
+stages = [{{ name = "press", steps = 1, motions = {{ one.translate = [0, 0, -0.02], other.translate = [0, 0, -0.02] }} }}]
+"""
+JOINED = 'remove contact \'other\': contacts.one.master = ["one.w0", "other.w0"]'
 
 
 def told(punch: str, changes: tuple[str, ...], more: str = "") -> list[tuple[str, str]]:
@@ -71,3 +87,17 @@ def exchanged() -> dict[str, float]:
     doubted = [name for name, scene in QUIET.items() if told(*scene)]
     doubted += ["both ways"] if told(FLAT, (), BOTH_WAYS) else []
     return {"silent": float(len(silent)), "doubted": float(len(doubted))}
+
+
+@case(
+    claim="Where a master goes on in that of another contact of the slave, with the same friction, a first look says that one contact has "
+    "both; else it does not.",
+    tier="gate",
+    grid={"changes": ("joined", "apart", "of other friction")},
+    bounds={"off": Bound(0.0, 0.0, "definition: whether the other is said than should be")},
+)
+def masters_joined(changes: str) -> dict[str, float]:
+    """Whether it is."""
+    overrides = {"joined": [], "apart": ["glue=[]"], "of other friction": ["contacts.other.friction=0.1"]}[changes]
+    warnings = outlook(Scene.from_toml(HALVES, overrides=overrides).problem()).warnings
+    return {"off": float(any(JOINED in warning for warning in warnings) != (changes == "joined"))}

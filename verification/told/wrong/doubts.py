@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from told.bending import LOAD, scene
+from told.exchanged import GLUE, HALVES
 from told.wrong.contacts import PAIR, PRESS, TYRE, UNUSUAL
 
 from isomortar.scene import Scene
@@ -120,6 +121,12 @@ DOUBTFUL = {
         'slave = "upper.w0"\nmaster = "lower.w1"',
         'slave = "lower.w1"\nmaster = "upper.w0"',
         "Exchange the two: upper.w0 ends within lower.w1",
+    ),
+    "masters that go on": (
+        HALVES.replace(GLUE, ""),
+        "format = 1\n",
+        "format = 1\n" + GLUE,
+        'both masters, which are joined, and remove contact \'other\': contacts.one.master = ["one.w0", "other.w0"]',
     ),
     "wholly beside": (*UNUSUAL["slave beside its master"], "upper.w0 is wholly beside its master"),
     "between the points": (

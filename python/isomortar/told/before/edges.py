@@ -6,11 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from isomortar.errors import InputError
 from isomortar.geometry.faces import cells
 from isomortar.geometry.grids import edges
 from isomortar.geometry.nearest import nearest
 from isomortar.geometry.patch import IntArray
-from isomortar.model.entities import Contact, Face, Problem
+from isomortar.model.entities import Contact, Face, Faces, Problem
 from isomortar.model.sheet import Sheet
 
 #: Edges bear where they are nearer to the other side than the two are anywhere and this share of its size: there faces lie on each other.
@@ -38,8 +39,34 @@ def of_edges(problem: Problem, contact: Contact, feet: IntArray, apart: float) -
     yield (
         f"contact {contact.name!r}: the slave goes on beyond edges of its master that bear on it, and {np.count_nonzero(feet == 0)} of its "
         f"{feet.size} quadrature points are beside these. As an edge moves points come and go, and load steps may be cut, or given up. "
-        f"Exchange the two: {contact.master.words} ends within {contact.slave.words}"
+        f"{_joined(problem, contact) or f'Exchange the two: {contact.master.words} ends within {contact.slave.words}'}"
     )
+
+
+def _joined(problem: Problem, contact: Contact) -> str:
+    """What to do where another contact of the slave has a master that goes on from this one's, and the same friction; else nothing."""
+    assert isinstance(contact.master, Face)
+    first, *more = contact.master.faces
+    for other in problem.contacts:
+        alike = other is not contact and (other.slave, *_friction(other)) == (contact.slave, *_friction(contact))
+        if not alike or not isinstance(other.master, Face) or set(other.master.faces) & set(contact.master.faces):
+            continue
+        whole = Faces(first.body, first.face, (*more, *other.master.faces))
+        try:
+            Sheet.of(problem, whole)
+        except InputError:
+            continue
+        names = ", ".join(f'"{name}"' for name in whole.words.split(", "))
+        return (
+            f"Give one of them both masters, which are joined, and remove contact {other.name!r}: "
+            f"contacts.{contact.name}.master = [{names}]"
+        )
+    return ""
+
+
+def _friction(contact: Contact) -> tuple[float | None, ...]:
+    """What friction bears."""
+    return contact.friction, contact.cohesion, contact.traction_max
 
 
 def _bear_within(one: Sheet, other: Sheet, apart: float) -> bool:
