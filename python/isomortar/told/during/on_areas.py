@@ -54,7 +54,7 @@ def _by_area(mechanics: PairMechanics) -> bool:
 
 
 def lacking(mechanics: PairMechanics, balance: Balance, number: int) -> float:
-    """Share of the friction of a contact that its elements leave out, about; 0 where it does not slide as a whole (theory 9.29).
+    """Share of the friction of a contact that its elements leave out, about; 0 where it does not slide as a whole (theory 9.28).
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def lacking(mechanics: PairMechanics, balance: Balance, number: int) -> float:
 
 
 def _as_one(pair: Pair, positions: FloatArray, projections: Projections, weights: FloatArray) -> float:
-    """Share of the slips' squares in the last increment that one way of all, or one turn, has, with weights of points (theory 9.29)."""
+    """Share of the slips' squares in the last increment that one way of all, or one turn, has, with weights of points (theory 9.28)."""
     weights = weights * (projections.slips > 0)
     slips = slip_vectors(pair, positions, projections)
     squares = float(weights @ np.square(slips).sum(axis=1))
