@@ -39,7 +39,9 @@ def upper_half(patch: Patch, axis: int, place: float) -> tuple[Patch, str]:
     plane = f"the plane {'xyz'[axis]} = {place:g}"
     cut = next((k for k in range(3) if _is_mirrored(patch, k, axis, place)), None)
     if cut is None:
-        raise InputError(f"is not its own mirror image in {plane}, by its control points, weights and knots")
+        raise InputError(
+            f"is not its own mirror image in {plane}, by its control points, weights and knots; {_instead(patch, axis, place)}"
+        )
     direction, letter = patch.directions[cut], "uvw"[cut]
     if direction.elements % 2:
         raise InputError(
@@ -59,6 +61,24 @@ def upper_half(patch: Patch, axis: int, place: float) -> tuple[Patch, str]:
     if part.control_points[:, axis].min() < place - _SAME * _far(patch):
         raise InputError(f"goes back and forth through {plane}; allowed: bodies of which one half is above it")
     return part, face
+
+
+def _instead(patch: Patch, axis: int, place: float) -> str:
+    """What to do with a patch that is not its own mirror image."""
+    letter, off = "xyz"[axis], patch.control_points[:, axis] - place
+    if min(off.max(), -off.min()) <= _SAME * _far(patch):
+        return (
+            f"it is all on one side: symmetry takes whole bodies, and halves them. Give the whole one, or leave symmetry.{letter} out and "
+            f'hold the face on the plane by a support, components = ["{letter}"]'
+        )
+    grid = patch.control_points.reshape(*patch.shape, 3, order="F")
+    closed = any(np.abs(np.take(grid, 0, k) - np.take(grid, -1, k)).max() <= _SAME * _far(patch) for k in range(3))
+    if closed:
+        return (
+            f"a closed body never is, as it begins on one side. Give half of it, leave symmetry.{letter} out, and hold its faces on the "
+            f'plane by supports, components = ["{letter}"]'
+        )
+    return "allowed: bodies a direction of which goes from one side to the other, alike on both"
 
 
 def _half(direction: Direction, control: FloatArray, upper: bool) -> tuple[Direction, FloatArray]:

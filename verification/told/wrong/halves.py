@@ -22,6 +22,8 @@ name = "press"
 steps = 2
 motions.top.translate = [0, 0, -0.04]
 """
+BOX = 'kind = "box", lower = [-0.5, 2.0, 0.0], upper = [0.5, 2.8, 0.5]'
+RING = 'kind = "ring", inner = 0.3, outer = 0.5, width = 1, axis = "z"'
 BESIDE = """[bodies.lower]
 geometry = { kind = "box", lower = [-0.5, 2.0, -0.6], upper = [0.5, 2.8, -0.1] }
 mesh = { elements = [4, 4, 2] }
@@ -31,6 +33,18 @@ TURN = '[[stages]]\nname = "turn"\nsteps = 1\nmotions.top.rotate = 20.0\n'
 
 REFUSED = {
     "off the middle": (PLANE, "x = 0.1", "bodies.block", "is not its own mirror image in the plane x = 0.1"),
+    "on one side": (
+        PLANE,
+        "x = -0.5",
+        "bodies.block",
+        "it is all on one side: symmetry takes whole bodies, and halves them. Give the whole",
+    ),
+    "closed": (
+        PLANE.replace(BOX, RING).replace('family = "L", order = [2, 2, 1], ', ""),
+        "x = 0.0",
+        "bodies.block",
+        "a closed body never is, as it begins on one side. Give half of it",
+    ),
     "an odd number": (
         PLANE.replace("[4, 4, 2]", "[5, 4, 2]"),
         "x = 0.0",
