@@ -24,8 +24,9 @@ module isomortar_sparse_lu
   !> take most rows of a high-order matrix for dense and spoil the ordering.
   real(c_double), parameter :: dense_limit = 1.0e3_c_double
 
-  !> Threshold of partial pivoting, on the diagonal and off it: no pivot is smaller than what it eliminates. With a tenth errors grew
-  !> along a belt of 60 elements, a chain, until no digit was left of a solution whose condition is 1e6; factors are as large.
+  !> Threshold of partial pivoting, on the diagonal and off it: no pivot is smaller than what it eliminates. With a tenth
+  !> errors grew along a belt of 60 elements, a chain, until no digit was left of a solution whose condition is 1e6; factors
+  !> are about as large.
   real(c_double), parameter :: pivot_tolerance = 1.0_c_double
 
   !> One pattern, its analysis, and the factors of the last matrix of that pattern.

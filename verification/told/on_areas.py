@@ -101,6 +101,14 @@ def friction(scene: str) -> dict[str, float]:
 #: Changes of the scene by which all of the friction is there, or none as a whole.
 NOTHING_LACKS: dict[str, Changes] = {
     "flat": (FLAT,),
+    "along an edge": (
+        FLAT,
+        "bodies.a.mesh.elements=[12, 2, 2]",
+        "contacts.c.plane={ normal = [0.0871557, 0, 0.9961947], point = [-0.5, 0, 0] }",
+        "contacts.c.traction_max=0.05",
+        "stages.press.motions.top.translate=[0, 0, -0.005]",
+        "stages.drag.motions.top.translate=[-0.1, 0, 0.00875]",
+    ),
     "pressed": ("stages.drag.motions.top.translate=[0, 0, -0.01]",),
     "sticks": ("stages.drag.motions.top.translate=[0.0001, 0, 0]",),
     "never at its largest": ("contacts.c.traction_max=2",),
@@ -109,8 +117,8 @@ NOTHING_LACKS: dict[str, Changes] = {
 
 
 @case(
-    claim="Nothing is said of areas that end where their slaves do, of what slips to all sides or sticks, of tractions below their "
-    "largest, nor of constraints at points.",
+    claim="Nothing is said of areas that end where their slaves do, of blocks on an edge, of what slips to all sides or sticks, of "
+    "tractions below their largest, nor of constraints at points.",
     tier="gate",
     grid={"scene": tuple(NOTHING_LACKS)},
     bounds={"said": Bound(0.0, 0.0, "definition: sentences")},

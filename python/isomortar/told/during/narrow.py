@@ -182,7 +182,7 @@ def _least(problem: Problem, contact: Contact, by_element: FloatArray) -> FloatA
 def _between(sums: FloatArray) -> bool:
     """Whether two rows side by side bear alike (theory 9.27)."""
     pairs = np.minimum(sums[:-1], sums[1:])
-    return bool(pairs.max(initial=0.0) >= ALIKE * sums.sum())
+    return bool(pairs.max(initial=0.0) >= ALIKE * sums.sum() > 0.0)
 
 
 def _sums(places: FloatArray, borne: FloatArray, axis: int) -> tuple[FloatArray, bool]:

@@ -26,6 +26,9 @@ MISSING = 1.0 / 3.0
 #: Share of the slips' squares that one way, or one turn, of all has to have: what bulges as it is pressed slips to all sides, and has no
 #: friction as a whole. Of what is dragged it is 0.99 and more.
 AS_ONE = 0.9
+#: Share of the force that a row at an end of the face has to have for contact to be along that edge: blocks that are tipped and dragged on
+#: one row had half the friction with elements half as long, and blocks that lie flat have a sixth there and less, or few rows in all.
+AT_EDGE = 0.7
 
 
 class OnAreas:
@@ -72,8 +75,20 @@ def lacking(mechanics: PairMechanics, balance: Balance, number: int) -> float:
     by_points = found * mechanics.radius(np.maximum(pair.field(response.pressure), 0.0))
     if bears == 0.0 or _as_one(pair, balance.positions, kinematics.projections, by_points) < AS_ONE:
         return 0.0
+    if _at_an_edge(pair, kinematics.control.weight * response.pressure):
+        return 0.0
     more = MISSING * (float(by_points.sum()) / bears - 1.0)
     return more / (1.0 + more)
+
+
+def _at_an_edge(pair: Pair, borne: FloatArray) -> bool:
+    """Whether a row at an end of the face bears most, and others do not: its points stand for more than is in contact, not for less."""
+    for axis in (0, 1):
+        row = np.unique(pair.places[:, axis], return_inverse=True)[1].ravel()
+        sums = np.bincount(row, borne)
+        if len(sums) > 2 and max(sums[0], sums[-1]) > AT_EDGE * sums.sum():
+            return True
+    return False
 
 
 def _as_one(pair: Pair, positions: FloatArray, projections: Projections, weights: FloatArray) -> float:
