@@ -36,15 +36,19 @@ def of_edges(problem: Problem, contact: Contact, feet: IntArray, apart: float) -
     twice = any((other.slave, other.master) == (contact.master, contact.slave) for other in problem.contacts)
     if master.rigid or twice or not _bear_within(master, slave, apart) or _bear_within(slave, master, apart):
         return
+    joined = _joined(problem, contact)
+    if joined and problem.contacts.index(joined[0]) < problem.contacts.index(contact):
+        return  # with that one both are told of
+    instead = _both(contact, *joined) if joined else f"Exchange the two: {contact.master.words} ends within {contact.slave.words}"
     yield (
         f"contact {contact.name!r}: the slave goes on beyond edges of its master that bear on it, and {np.count_nonzero(feet == 0)} of its "
         f"{feet.size} quadrature points are beside these. As an edge moves points come and go, and load steps may be cut, or given up. "
-        f"{_joined(problem, contact) or f'Exchange the two: {contact.master.words} ends within {contact.slave.words}'}"
+        f"{instead}"
     )
 
 
-def _joined(problem: Problem, contact: Contact) -> str:
-    """What to do where another contact of the slave has a master that goes on from this one's, and the same friction; else nothing."""
+def _joined(problem: Problem, contact: Contact) -> tuple[Contact, Faces] | None:
+    """Another contact of the slave whose master goes on from this one's, with the same friction, and both masters; None: there is none."""
     assert isinstance(contact.master, Face)
     first, *more = contact.master.faces
     for other in problem.contacts:
@@ -56,12 +60,14 @@ def _joined(problem: Problem, contact: Contact) -> str:
             Sheet.of(problem, whole)
         except InputError:
             continue
-        names = ", ".join(f'"{name}"' for name in whole.words.split(", "))
-        return (
-            f"Give one of them both masters, which are joined, and remove contact {other.name!r}: "
-            f"contacts.{contact.name}.master = [{names}]"
-        )
-    return ""
+        return other, whole
+    return None
+
+
+def _both(contact: Contact, other: Contact, whole: Faces) -> str:
+    """That one contact should have the masters of two."""
+    names = ", ".join(f'"{name}"' for name in whole.words.split(", "))
+    return f"Give one of them both masters, which are joined, and remove contact {other.name!r}: contacts.{contact.name}.master = [{names}]"
 
 
 def _friction(contact: Contact) -> tuple[float | None, ...]:
