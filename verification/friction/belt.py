@@ -9,7 +9,7 @@ from isomortar.harness import Bound, case
 from isomortar.march.simulation import Simulation
 from isomortar.scene import Scene
 
-#: Half a turn of friction 0.3. A point of the belt is 50 times as long as the belt is thick.
+#: Half a turn of friction 0.3.
 SCENE = """
 format = 1
 materials.leather = { young = 1000.0, poisson = 0.0 }
